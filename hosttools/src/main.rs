@@ -1,0 +1,2 @@
+//! The `flangeway` program.
+fn main() {}
