@@ -1,1 +1,316 @@
-//! Placeholder.
+//! Writes table images: the counterpart of the kernel's reader, byte for byte as `tables/FORMAT.md` says.
+
+use std::io::Write as _;
+use std::ops::Range;
+use std::path::Path;
+
+use flangeway::layout::{
+    CHECKSUM_AT, HEADER_AT, HEADER_LENGTH_AT, LENGTH_AT, MAGIC, MAGIC_AT, Sections, SideSections, VERSION, VERSION_AT,
+    checksum,
+};
+use flangeway::{
+    Axis, AxisCounts, AxisName, ContactTable, Header, LANES, MAX_BINS, RigidMaps, Scale, bin_of, bins_per_unit,
+};
+
+use crate::error::{Error, Result};
+
+/// Everything a table image is made of.
+#[derive(Debug, Clone, Copy)]
+pub struct ImageParts<'a> {
+    /// The header; its axis counts are filled in by [`write_image`].
+    pub header: Header<'a>,
+    /// Nodes of the seven axes in the order of [`AxisName::ALL`], m or rad.
+    pub axes: [&'a [f32]; 7],
+    /// Data of the right side.
+    pub right: SideParts<'a>,
+    /// Data of the left side, where the header has one.
+    pub left: Option<SideParts<'a>>,
+}
+
+/// Data of one side.
+#[derive(Debug, Clone, Copy)]
+pub struct SideParts<'a> {
+    /// Rigid roll, `[lateral][yaw]` over the rigid axes, rad.
+    pub rigid_roll: &'a [f32],
+    /// Rigid vertical displacement, `[lateral][yaw][roll offset]` over the rigid axes, m.
+    pub rigid_vertical: &'a [f32],
+    /// Records, `[lateral][yaw][roll offset][vertical]` over the records' axes.
+    pub records: &'a [[i16; LANES]],
+}
+
+/// An axis in the image's form, for whoever needs the kernel's interpolation before there is an image.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OwnedAxis {
+    name: AxisName,
+    nodes: Vec<[u8; 4]>,
+    map: Vec<[u8; 2]>,
+}
+
+impl OwnedAxis {
+    /// An axis with these nodes (m or rad) and the smallest search map that holds them.
+    ///
+    /// # Errors
+    /// Fewer than two nodes, nodes that do not increase strictly or are not plausible, or lie so unevenly that 4096
+    /// bins do not part them.
+    pub fn new(name: AxisName, nodes: &[f32]) -> Result<Self> {
+        let map = bin_map(nodes).ok_or_else(|| {
+            let message =
+                format!("{} nodes do not increase strictly or lie too close for {MAX_BINS} bins", nodes.len());
+            Error::field("", format!("{name} axis"), message)
+        })?;
+        let axis = Self {
+            name,
+            nodes: nodes.iter().map(|x| x.to_le_bytes()).collect(),
+            map: map.iter().map(|cell| cell.to_le_bytes()).collect(),
+        };
+        Axis::new(name, &axis.nodes, &axis.map).map_err(|e| Error::field("", format!("{name} axis"), e.to_string()))?;
+        Ok(axis)
+    }
+
+    /// The kernel's view of this axis.
+    ///
+    /// # Panics
+    /// Never: the constructor has made the same view.
+    #[must_use]
+    pub fn view(&self) -> Axis<'_> {
+        Axis::new(self.name, &self.nodes, &self.map).expect("checked by the constructor")
+    }
+
+    /// Bins of the search map.
+    #[must_use]
+    pub fn bins(&self) -> usize {
+        self.map.len()
+    }
+
+    fn counts(&self) -> AxisCounts {
+        let count = |n: usize| u16::try_from(n).unwrap_or(u16::MAX);
+        AxisCounts { nodes: count(self.nodes.len()), bins: count(self.map.len()) }
+    }
+}
+
+/// Smallest map of uniform bins to cells such that no bin holds two inner nodes; none if there is none.
+fn bin_map(nodes: &[f32]) -> Option<Vec<u16>> {
+    let [first, inner @ .., last] = nodes else { return None };
+    if nodes.len() > MAX_BINS + 2 || !nodes.is_sorted_by(|a, b| a < b) {
+        return None;
+    }
+    let (first, last) = (f64::from(*first), f64::from(*last));
+    (inner.len().max(1)..=MAX_BINS).find_map(|bins| {
+        let scale = bins_per_unit(first, last, bins);
+        let found: Vec<usize> = inner.iter().map(|x| bin_of(f64::from(*x), first, scale, bins)).collect();
+        found.is_sorted_by(|a, b| a < b).then(|| {
+            // The cell at a bin's start: the number of inner nodes in the bins before.
+            (0..bins).map(|bin| u16::try_from(found.partition_point(|b| *b < bin)).unwrap_or(u16::MAX)).collect()
+        })
+    })
+}
+
+/// Rigid maps in the image's form, for sampling with the kernel's own interpolation.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OwnedRigidMaps {
+    axes: [OwnedAxis; 3],
+    roll: Vec<[u8; 4]>,
+    vertical: Vec<[u8; 4]>,
+}
+
+impl OwnedRigidMaps {
+    /// Maps over axes (lateral, yaw, roll offset): `roll[lateral][yaw]`, rad, and `vertical[lateral][yaw][roll offset]`,
+    /// m.
+    ///
+    /// # Errors
+    /// Bad axes, or maps whose lengths do not fit them.
+    pub fn new(axes: [&[f32]; 3], roll: &[f32], vertical: &[f32]) -> Result<Self> {
+        let [lateral, yaw, roll_offset] = axes;
+        let maps = Self {
+            axes: [
+                OwnedAxis::new(AxisName::RigidLateral, lateral)?,
+                OwnedAxis::new(AxisName::RigidYaw, yaw)?,
+                OwnedAxis::new(AxisName::RigidRollOffset, roll_offset)?,
+            ],
+            roll: roll.iter().map(|x| x.to_le_bytes()).collect(),
+            vertical: vertical.iter().map(|x| x.to_le_bytes()).collect(),
+        };
+        match maps.try_view() {
+            Some(_) => Ok(maps),
+            None => Err(lengths(
+                "rigid maps",
+                roll.len() + vertical.len(),
+                lateral.len() * yaw.len() * (1 + roll_offset.len()),
+            )),
+        }
+    }
+
+    fn try_view(&self) -> Option<RigidMaps<'_>> {
+        let [lateral, yaw, roll_offset] = &self.axes;
+        RigidMaps::new(lateral.view(), yaw.view(), roll_offset.view(), &self.roll, &self.vertical)
+    }
+
+    /// The kernel's view of these maps.
+    ///
+    /// # Panics
+    /// Never: the constructor has made the same view.
+    #[must_use]
+    pub fn view(&self) -> RigidMaps<'_> {
+        self.try_view().expect("checked by the constructor")
+    }
+}
+
+fn lengths(field: &str, found: usize, needed: usize) -> Error {
+    Error::field("", field, format!("{found} values, the axes need {needed}"))
+}
+
+/// The table image of these parts: the same bytes for the same parts, always. What it returns the kernel accepts.
+///
+/// # Errors
+/// Bad axes, lengths that do not fit them, a header too long, an image beyond 4 GiB, and whatever else the kernel
+/// refuses.
+pub fn write_image(parts: &ImageParts<'_>) -> Result<Vec<u8>> {
+    let mut header = parts.header;
+    let mut axes = Vec::with_capacity(AxisName::ALL.len());
+    for ((name, nodes), counts) in AxisName::ALL.into_iter().zip(parts.axes).zip(&mut header.axes) {
+        let axis = OwnedAxis::new(name, nodes)?;
+        *counts = axis.counts();
+        axes.push(axis);
+    }
+    if header.left.is_some() != parts.left.is_some() {
+        return Err(Error::field("", "left", "header and data disagree whether there is a left side"));
+    }
+    let header_bytes =
+        postcard::to_allocvec(&header).map_err(|e| Error::field("", "header", format!("cannot be encoded: {e}")))?;
+    let sections = Sections::new(header_bytes.len(), &header.axes, header.sides())
+        .ok_or_else(|| Error::field("", "axes", "the table would be larger than 4 GiB"))?;
+    let mut image = vec![0; sections.total];
+    let number = |n: usize| u32::try_from(n).unwrap_or(u32::MAX).to_le_bytes();
+    image[MAGIC_AT].copy_from_slice(&MAGIC);
+    image[VERSION_AT].copy_from_slice(&VERSION.to_le_bytes());
+    image[LENGTH_AT].copy_from_slice(&number(sections.total));
+    image[HEADER_LENGTH_AT].copy_from_slice(&number(header_bytes.len()));
+    image[HEADER_AT..HEADER_AT + header_bytes.len()].copy_from_slice(&header_bytes);
+    for ((axis, nodes), bins) in axes.iter().zip(&sections.nodes).zip(&sections.bins) {
+        image[nodes.clone()].copy_from_slice(axis.nodes.as_flattened());
+        image[bins.clone()].copy_from_slice(axis.map.as_flattened());
+    }
+    let [right, left] = &sections.sides;
+    write_side(&mut image, right, &parts.right)?;
+    if let Some(data) = &parts.left {
+        write_side(&mut image, left, data)?;
+    }
+    let crc = checksum(&image);
+    image[CHECKSUM_AT].copy_from_slice(&crc.to_le_bytes());
+    ContactTable::new(&image).map_err(|e| Error::field("", "table", e.to_string()))?;
+    Ok(image)
+}
+
+fn write_side(image: &mut [u8], place: &SideSections, data: &SideParts<'_>) -> Result<()> {
+    fill(image, &place.rigid_roll, "rigid roll", data.rigid_roll.iter().map(|x| x.to_le_bytes()))?;
+    fill(image, &place.rigid_vertical, "rigid vertical", data.rigid_vertical.iter().map(|x| x.to_le_bytes()))?;
+    fill(image, &place.records, "records", data.records.as_flattened().iter().map(|q| q.to_le_bytes()))
+}
+
+/// Fills a section with values that must be exactly as many as fit.
+fn fill<const N: usize>(
+    image: &mut [u8],
+    section: &Range<usize>,
+    name: &str,
+    values: impl ExactSizeIterator<Item = [u8; N]>,
+) -> Result<()> {
+    if values.len() * N != section.len() {
+        return Err(lengths(name, values.len(), section.len() / N));
+    }
+    for (place, value) in image[section.clone()].chunks_exact_mut(N).zip(values) {
+        place.copy_from_slice(&value);
+    }
+    Ok(())
+}
+
+/// The scale that spans `least` to `largest` with i16's steps; a constant channel gets steps far below its value.
+#[must_use]
+pub fn scale_over(least: f64, largest: f64) -> Scale {
+    let offset = 0.5 * (least + largest);
+    let half = (0.5 * (largest - least)).max(offset.abs() * 1e-6).max(1e-12);
+    Scale { offset: offset as f32, step: (half / 32_766.0) as f32 }
+}
+
+/// The scale of values up to a magnitude that keeps zero exactly zero. The stiffness needs it, so that a slot without
+/// contact carries no trace of force, and the longitudinal offset, so that it vanishes with the yaw.
+#[must_use]
+pub fn scale_through_zero(largest_magnitude: f64) -> Scale {
+    Scale { offset: 0.0, step: (largest_magnitude.max(1e-12) / 32_766.0) as f32 }
+}
+
+/// The integer nearest to a value on a scale, saturated.
+#[must_use]
+pub fn quantise(scale: &Scale, value: f64) -> i16 {
+    let q = libm::rint((value - f64::from(scale.offset)) / f64::from(scale.step));
+    q.clamp(f64::from(i16::MIN), f64::from(i16::MAX)) as i16
+}
+
+/// Writes a file whole or not at all: to a temporary file in the same folder, then renamed.
+///
+/// # Errors
+/// A missing folder, a full disk, no permission: the message says which file and why, and nothing is left behind.
+pub fn write_atomically(path: impl AsRef<Path>, bytes: &[u8]) -> Result<()> {
+    let path = path.as_ref();
+    let failed = |what: &str, e: &std::io::Error| Error::file(path, format!("{what}: {e}"));
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    if !folder.is_dir() {
+        return Err(Error::file(path, format!("folder {} does not exist", folder.display())));
+    }
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".flangeway-").suffix(".tmp");
+    // Temporary files are private by default; this one becomes an ordinary file, subject to the umask.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = builder.tempfile_in(folder).map_err(|e| failed("cannot be created", &e))?;
+    file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(|e| failed("cannot be written", &e))?;
+    file.persist(path).map_err(|e| failed("cannot be put in place", &e.error))?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn writes_whole_files_or_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("t.fwt");
+        write_atomically(&path, b"one").unwrap();
+        write_atomically(&path, b"two").unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"two");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file stays");
+        let missing = folder.path().join("missing").join("t.fwt");
+        let message = write_atomically(&missing, b"three").unwrap_err().to_string();
+        assert!(message.ends_with("missing does not exist"), "{message}");
+        // A folder in the file's place: nothing is replaced, nothing left behind.
+        let taken = folder.path().join("taken");
+        std::fs::create_dir_all(taken.join("inside")).unwrap();
+        assert!(write_atomically(&taken, b"four").is_err());
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn full_disk_is_an_error() {
+        // A folder that takes no files at all stands for the full disk.
+        let message = write_atomically("/proc/t.fwt", b"x").unwrap_err().to_string();
+        assert!(message.starts_with("/proc/t.fwt: cannot be created"), "{message}");
+    }
+
+    #[test]
+    fn scales_and_integers() {
+        let scale = scale_over(-2.0, 4.0);
+        for value in [-2.0, 0.0, 1.0, 4.0] {
+            let back = f64::from(scale.value(f32::from(quantise(&scale, value))));
+            assert!((back - value).abs() < 0.51 * f64::from(scale.step));
+        }
+        assert_eq!((quantise(&scale, -100.0), quantise(&scale, 100.0)), (i16::MIN, i16::MAX));
+        let constant = scale_over(0.46, 0.46);
+        assert_eq!((constant.value(f32::from(quantise(&constant, 0.46))), constant.step > 0.0), (0.46, true));
+        let stiffness = scale_through_zero(2e11);
+        assert_eq!(stiffness.value(f32::from(quantise(&stiffness, 0.0))), 0.0);
+    }
+}

@@ -1,0 +1,279 @@
+//! Axes with nodes at any spacing, searched in constant time.
+
+use core::fmt;
+
+use crate::error::TableError;
+
+/// Most bins an axis can have.
+pub const MAX_BINS: usize = 4096;
+
+/// Largest distance outside its cell, in cell widths, that a coordinate is extrapolated over.
+const EXTRAPOLATION_LIMIT: f64 = 1024.0;
+
+/// The seven axes of a table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum AxisName {
+    /// Records: lateral displacement u, m.
+    Lateral,
+    /// Records: magnitude of yaw, rad.
+    Yaw,
+    /// Records: roll less the rigid roll, rad.
+    RollOffset,
+    /// Records: vertical displacement less the rigid one, zeta, m.
+    Vertical,
+    /// Rigid maps: lateral displacement u, m.
+    RigidLateral,
+    /// Rigid maps: magnitude of yaw, rad.
+    RigidYaw,
+    /// Rigid maps: roll less the rigid roll, rad.
+    RigidRollOffset,
+}
+
+impl AxisName {
+    /// All axes in the order of the image.
+    pub const ALL: [Self; 7] = [
+        Self::Lateral,
+        Self::Yaw,
+        Self::RollOffset,
+        Self::Vertical,
+        Self::RigidLateral,
+        Self::RigidYaw,
+        Self::RigidRollOffset,
+    ];
+
+    /// Position in [`AxisName::ALL`].
+    #[inline]
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self as usize
+    }
+
+    /// Least and largest plausible node, m or rad.
+    #[must_use]
+    pub const fn bounds(self) -> (f32, f32) {
+        match self {
+            Self::Lateral | Self::RigidLateral => (-1.0, 1.0),
+            Self::Yaw | Self::RigidYaw => (0.0, 0.125),
+            Self::RollOffset | Self::RigidRollOffset => (-0.125, 0.125),
+            Self::Vertical => (-0.1, 0.1),
+        }
+    }
+}
+
+impl fmt::Display for AxisName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Lateral => "lateral",
+            Self::Yaw => "yaw",
+            Self::RollOffset => "roll offset",
+            Self::Vertical => "vertical",
+            Self::RigidLateral => "rigid lateral",
+            Self::RigidYaw => "rigid yaw",
+            Self::RigidRollOffset => "rigid roll offset",
+        })
+    }
+}
+
+/// Where a coordinate lies on an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// Cell: between node `cell` and node `cell + 1`.
+    pub cell: usize,
+    /// Position in the cell, 0 at its lower node, 1 at its upper; clamped to 0..=1.
+    pub fraction: f64,
+    /// The same for a coordinate outside the axis, not clamped (but to +-1024 cell widths).
+    pub unclamped: f64,
+    /// Whether the coordinate lies outside the axis.
+    pub clamped: bool,
+}
+
+/// An axis, read in place: its nodes, and the map of uniform bins to cells by which a cell is found in constant time.
+///
+/// Bins divide first node to last node evenly, as many as it takes that none holds two inner nodes. `map[bin]` is the
+/// number of inner nodes in the bins before, which is the cell at the bin's start; one comparison with the only node
+/// the bin may hold does the rest. Both writer and reader find a node's bin by [`bin_of`]: it is monotonic in floating
+/// point, so the search is exact however its products round. The cost is the same for every coordinate and spacing.
+#[derive(Clone, Copy)]
+pub struct Axis<'a> {
+    nodes: &'a [[u8; 4]],
+    map: &'a [[u8; 2]],
+    first: f64,
+    last: f64,
+    bins_per_unit: f64,
+}
+
+/// Bin of coordinate `x` on an axis that begins at `first`: floor((x - first) bins_per_unit), within 0..bins.
+#[inline]
+#[must_use]
+pub fn bin_of(x: f64, first: f64, bins_per_unit: f64, bins: usize) -> usize {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the cast saturates, and a negative product is bin 0"
+    )]
+    let bin = ((x - first) * bins_per_unit) as usize;
+    bin.min(bins.saturating_sub(1))
+}
+
+/// Bins per unit of an axis from `first` to `last`.
+#[inline]
+#[must_use]
+#[expect(clippy::cast_precision_loss, reason = "at most 4096 bins")]
+pub fn bins_per_unit(first: f64, last: f64, bins: usize) -> f64 {
+    bins as f64 / (last - first)
+}
+
+impl<'a> Axis<'a> {
+    /// An axis over little-endian `f32` nodes and `u16` bins.
+    ///
+    /// # Errors
+    /// Fewer than two nodes, no bins or too many, nodes that are not strictly increasing numbers within
+    /// [`AxisName::bounds`], bins that do not fit the nodes.
+    pub fn new(name: AxisName, nodes: &'a [[u8; 4]], map: &'a [[u8; 2]]) -> Result<Self, TableError> {
+        let counts = TableError::AxisCount { axis: name, nodes: count(nodes.len()), bins: count(map.len()) };
+        if nodes.len() < 2 || nodes.len() > MAX_BINS + 2 || map.is_empty() || map.len() > MAX_BINS {
+            return Err(counts);
+        }
+        let (least, largest) = name.bounds();
+        let mut before = f32::NEG_INFINITY;
+        for (index, bytes) in nodes.iter().enumerate() {
+            let value = f32::from_le_bytes(*bytes);
+            // A comparison with NaN is false.
+            let good = value > before && value >= least && value <= largest;
+            if !good {
+                return Err(TableError::AxisNode { axis: name, index, value });
+            }
+            before = value;
+        }
+        let mut axis = Self { nodes, map, first: 0.0, last: 0.0, bins_per_unit: 0.0 };
+        axis.first = axis.node(0);
+        axis.last = axis.node(nodes.len() - 1);
+        axis.bins_per_unit = bins_per_unit(axis.first, axis.last, map.len());
+        axis.check_bins(name)?;
+        Ok(axis)
+    }
+
+    /// Every bin leads to the cell at its start and holds at most one inner node.
+    fn check_bins(&self, name: AxisName) -> Result<(), TableError> {
+        let inner_end = self.nodes.len() - 1;
+        let mut next = 1; // the first inner node not in the bins before
+        for (index, bytes) in self.map.iter().enumerate() {
+            let found = u16::from_le_bytes(*bytes);
+            let mut inside = 0;
+            let start = next;
+            while next < inner_end && self.bin(self.node(next)) == index {
+                next += 1;
+                inside += 1;
+            }
+            if usize::from(found) != start - 1 || inside > 1 {
+                return Err(TableError::AxisBin { axis: name, index, found });
+            }
+        }
+        Ok(())
+    }
+
+    #[inline]
+    fn bin(&self, x: f64) -> usize {
+        bin_of(x, self.first, self.bins_per_unit, self.map.len())
+    }
+
+    /// Number of nodes.
+    #[inline]
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Always false: an axis has at least two nodes.
+    #[inline]
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// A node's coordinate, m or rad; 0 beyond the last.
+    #[inline]
+    #[must_use]
+    pub fn node(&self, index: usize) -> f64 {
+        f64::from(f32::from_le_bytes(self.nodes.get(index).copied().unwrap_or_default()))
+    }
+
+    /// All nodes' coordinates, m or rad.
+    pub fn nodes(&self) -> impl Iterator<Item = f64> + 'a {
+        self.nodes.iter().map(|bytes| f64::from(f32::from_le_bytes(*bytes)))
+    }
+
+    /// First and last node, m or rad.
+    #[inline]
+    #[must_use]
+    pub fn range(&self) -> (f64, f64) {
+        (self.first, self.last)
+    }
+
+    /// Finds the cell of a coordinate and its place in it. `x` must be a number.
+    #[inline]
+    #[must_use]
+    pub fn locate(&self, x: f64) -> Place {
+        let inside = x.max(self.first).min(self.last);
+        let at_start = usize::from(u16::from_le_bytes(self.map.get(self.bin(inside)).copied().unwrap_or_default()));
+        let beyond = inside >= self.node(at_start + 1);
+        // The last node belongs to the last cell.
+        let cell = (at_start + usize::from(beyond)).min(self.nodes.len() - 2);
+        let (lower, upper) = (self.node(cell), self.node(cell + 1));
+        let unclamped = ((x - lower) / (upper - lower)).clamp(-EXTRAPOLATION_LIMIT, EXTRAPOLATION_LIMIT);
+        Place { cell, fraction: unclamped.clamp(0.0, 1.0), unclamped, clamped: (x < self.first) | (x > self.last) }
+    }
+}
+
+impl fmt::Debug for Axis<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Axis({} nodes in {} bins from {} to {})", self.nodes.len(), self.map.len(), self.first, self.last)
+    }
+}
+
+/// A count for an error message, saturated.
+fn count(n: usize) -> u16 {
+    u16::try_from(n).unwrap_or(u16::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec::Vec;
+
+    fn bytes(nodes: &[f32], map: &[u16]) -> (Vec<[u8; 4]>, Vec<[u8; 2]>) {
+        (nodes.iter().map(|x| x.to_le_bytes()).collect(), map.iter().map(|x| x.to_le_bytes()).collect())
+    }
+
+    #[test]
+    fn finds_cells_between_uneven_nodes() {
+        // Range 0.08 in 4 bins of 0.02: 0.01 lies in bin 0, 0.03 in bin 1.
+        let (nodes, map) = bytes(&[0.0, 0.01, 0.03, 0.08], &[0, 1, 2, 2]);
+        let axis = Axis::new(AxisName::Yaw, &nodes, &map).unwrap();
+        for (x, cell) in [(0.0, 0), (0.009, 0), (0.0101, 1), (0.029, 1), (0.0301, 2), (0.08, 2), (1.0, 2), (-1.0, 0)] {
+            assert_eq!(axis.locate(x).cell, cell, "{x}");
+        }
+        let end = axis.locate(axis.node(3));
+        assert_eq!((end.fraction, end.clamped), (1.0, false));
+        let node = axis.locate(axis.node(2));
+        assert_eq!((node.cell, node.fraction), (2, 0.0));
+        let outside = axis.locate(0.13);
+        assert!(outside.clamped && outside.fraction == 1.0 && (outside.unclamped - 2.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn refuses_bad_nodes_and_bins() {
+        let check = |nodes: &[f32], map: &[u16]| {
+            let (nodes, map) = bytes(nodes, map);
+            Axis::new(AxisName::Yaw, &nodes, &map).map(|_| ()).unwrap_err()
+        };
+        assert!(matches!(check(&[0.0], &[0]), TableError::AxisCount { nodes: 1, bins: 1, .. }));
+        assert!(matches!(check(&[0.0, 0.1], &[]), TableError::AxisCount { .. }));
+        assert!(matches!(check(&[0.0, 0.0], &[0]), TableError::AxisNode { index: 1, .. }));
+        assert!(matches!(check(&[0.0, f32::NAN], &[0]), TableError::AxisNode { index: 1, .. }));
+        assert!(matches!(check(&[-0.1, 0.1], &[0]), TableError::AxisNode { index: 0, .. }));
+        assert!(matches!(check(&[0.0, 0.5], &[0]), TableError::AxisNode { index: 1, .. }));
+        assert!(matches!(check(&[0.0, 0.05, 0.1], &[1]), TableError::AxisBin { index: 0, .. }));
+        assert!(matches!(check(&[0.0, 0.03, 0.06, 0.1], &[0]), TableError::AxisBin { index: 0, .. }));
+    }
+}

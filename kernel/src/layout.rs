@@ -1,0 +1,161 @@
+//! Where everything lies in a table image; `tables/FORMAT.md` says the same in words. Writer and reader both use it.
+#![deny(clippy::arithmetic_side_effects)]
+
+use core::ops::Range;
+
+use crc::{CRC_32_ISCSI, Crc};
+
+use crate::header::AxisCounts;
+
+/// First bytes of every image.
+pub const MAGIC: [u8; 4] = *b"FWT1";
+/// Version of the format.
+pub const VERSION: u32 = 1;
+/// Bytes of the magic.
+pub const MAGIC_AT: Range<usize> = 0..4;
+/// Bytes of the format version, `u32`.
+pub const VERSION_AT: Range<usize> = 4..8;
+/// Bytes of the image's total length, `u32`.
+pub const LENGTH_AT: Range<usize> = 8..12;
+/// Bytes of the checksum, `u32`.
+pub const CHECKSUM_AT: Range<usize> = 12..16;
+/// Bytes of the header's length, `u32`.
+pub const HEADER_LENGTH_AT: Range<usize> = 16..20;
+/// Where the header begins.
+pub const HEADER_AT: usize = 20;
+/// Longest header, bytes.
+pub const HEADER_LIMIT: usize = 65_536;
+/// Alignment of the sections from the image's start, bytes.
+pub const ALIGNMENT: usize = 64;
+/// Bytes of a record.
+pub const RECORD: usize = 64;
+
+/// CRC-32C (Castagnoli, as in iSCSI) over the whole image but the checksum's own four bytes.
+#[must_use]
+pub fn checksum(image: &[u8]) -> u32 {
+    static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
+    let mut digest = CRC.digest();
+    digest.update(image.get(..CHECKSUM_AT.start).unwrap_or_default());
+    digest.update(image.get(CHECKSUM_AT.end..).unwrap_or_default());
+    digest.finalize()
+}
+
+/// Sections of a side, as byte ranges; empty for a left side that mirrors the right one.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct SideSections {
+    /// `f32` rigid roll, `[lateral][yaw]`.
+    pub rigid_roll: Range<usize>,
+    /// `f32` rigid vertical displacement, `[lateral][yaw][roll offset]`.
+    pub rigid_vertical: Range<usize>,
+    /// Records, `[lateral][yaw][roll offset][vertical]`, 64 bytes each.
+    pub records: Range<usize>,
+}
+
+/// All sections of an image, as byte ranges.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Sections {
+    /// `f32` nodes of the seven axes.
+    pub nodes: [Range<usize>; 7],
+    /// `u16` search maps of the seven axes.
+    pub bins: [Range<usize>; 7],
+    /// Right and left side.
+    pub sides: [SideSections; 2],
+    /// Zero bytes that align the sections: before the axes, before each side's rigid maps and its records.
+    pub padding: [Range<usize>; 5],
+    /// Bytes of the whole image.
+    pub total: usize,
+}
+
+/// Hands out byte ranges one after the other; none once a position does not fit `u32`.
+struct Cursor(Option<usize>);
+
+impl Cursor {
+    fn take(&mut self, size: usize, counts: &[u16]) -> Range<usize> {
+        let start = self.0;
+        let bytes = counts.iter().try_fold(size, |product, n| product.checked_mul(usize::from(*n)));
+        self.0 = start
+            .zip(bytes)
+            .and_then(|(start, bytes)| start.checked_add(bytes))
+            .filter(|end| u32::try_from(*end).is_ok());
+        start.zip(self.0).map_or(0..0, |(start, end)| start..end)
+    }
+
+    fn align(&mut self) -> Range<usize> {
+        let start = self.0;
+        self.0 =
+            start.and_then(|start| start.checked_next_multiple_of(ALIGNMENT)).filter(|end| u32::try_from(*end).is_ok());
+        start.zip(self.0).map_or(0..0, |(start, end)| start..end)
+    }
+}
+
+impl Sections {
+    /// Sections for a header of this length with these axes and one or two sides; none beyond 4 GiB.
+    #[must_use]
+    pub fn new(header_length: usize, axes: &[AxisCounts; 7], sides: usize) -> Option<Self> {
+        let mut sections = Self::default();
+        let mut cursor = Cursor(HEADER_AT.checked_add(header_length));
+        let [lateral, yaw, roll, vertical, rigid_lateral, rigid_yaw, rigid_roll] = axes.map(|axis| axis.nodes);
+        let [axes_gap, right_maps_gap, right_records_gap, left_maps_gap, left_records_gap] = &mut sections.padding;
+        *axes_gap = cursor.align();
+        for (range, axis) in sections.nodes.iter_mut().zip(axes) {
+            *range = cursor.take(size_of::<f32>(), &[axis.nodes]);
+        }
+        for (range, axis) in sections.bins.iter_mut().zip(axes) {
+            *range = cursor.take(size_of::<u16>(), &[axis.bins]);
+        }
+        let gaps = [(right_maps_gap, right_records_gap), (left_maps_gap, left_records_gap)];
+        for (side, (maps_gap, records_gap)) in sections.sides.iter_mut().zip(gaps).take(sides) {
+            *maps_gap = cursor.align();
+            side.rigid_roll = cursor.take(size_of::<f32>(), &[rigid_lateral, rigid_yaw]);
+            side.rigid_vertical = cursor.take(size_of::<f32>(), &[rigid_lateral, rigid_yaw, rigid_roll]);
+            *records_gap = cursor.align();
+            side.records = cursor.take(RECORD, &[lateral, yaw, roll, vertical]);
+        }
+        sections.total = cursor.0?;
+        Some(sections)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn counts(n: [u16; 7]) -> [AxisCounts; 7] {
+        n.map(|nodes| AxisCounts { nodes, bins: 1 })
+    }
+
+    #[test]
+    fn sections_follow_each_other_aligned() {
+        let s = Sections::new(100, &counts([2, 2, 2, 3, 2, 2, 2]), 2).unwrap();
+        assert_eq!(s.padding[0], 120..128);
+        assert_eq!(s.nodes[0], 128..136);
+        assert_eq!(s.nodes[6], 180..188);
+        assert_eq!(s.bins[6], 200..202);
+        assert_eq!(s.padding[1], 202..256);
+        assert_eq!(s.sides[0], SideSections { rigid_roll: 256..272, rigid_vertical: 272..304, records: 320..1856 });
+        assert_eq!(s.sides[1].records, 1920..3456);
+        assert_eq!(s.total, 3456);
+        assert_eq!(Sections::new(100, &counts([2, 2, 2, 3, 2, 2, 2]), 1).unwrap().total, 1856);
+    }
+
+    #[test]
+    fn order_of_the_padding() {
+        let s = Sections::new(100, &counts([2, 2, 2, 3, 2, 2, 2]), 2).unwrap();
+        assert_eq!(s.padding, [120..128, 202..256, 304..320, 1856..1856, 1904..1920]);
+    }
+
+    #[test]
+    fn no_table_beyond_four_gibibytes() {
+        assert_eq!(Sections::new(100, &counts([4097, 4097, 4097, 4097, 2, 2, 2]), 1), None);
+        assert_eq!(Sections::new(100, &counts([u16::MAX; 7]), 2), None);
+        assert_eq!(Sections::new(usize::MAX, &counts([2; 7]), 1), None);
+    }
+
+    #[test]
+    fn checksum_skips_itself() {
+        let mut image = *b"12345678....____9";
+        assert_eq!(checksum(&image), checksum(b"12345678....////9"));
+        image[16] = b'8';
+        assert_ne!(checksum(&image), checksum(b"12345678....////9"));
+    }
+}

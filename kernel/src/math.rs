@@ -1,0 +1,84 @@
+//! The kernel's only square root, sines and cosines: the same bits on every target, the same work for every argument.
+
+/// Largest angle of yaw and roll that is computed, rad; larger ones are clamped and flagged.
+pub const ANGLE_LIMIT: f64 = 0.125;
+
+/// An angle within [`ANGLE_LIMIT`] with its functions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Angle {
+    /// The angle, clamped to +-[`ANGLE_LIMIT`], rad.
+    pub value: f64,
+    /// sin of it.
+    pub sin: f64,
+    /// cos of it.
+    pub cos: f64,
+    /// 1 - cos of it, without the cancellation.
+    pub versine: f64,
+    /// Whether the angle was clamped.
+    pub limited: bool,
+}
+
+impl Angle {
+    /// Series of sine and versine, the truncated terms below 2.4e-17 of the result at [`ANGLE_LIMIT`].
+    ///
+    /// Measured against libm over the whole domain: sine within 2.3e-16 relative (one unit in the last place), cosine
+    /// within 1.2e-16, versine within 4.5e-16 (libm's rounding of 2 sin^2 included).
+    #[inline]
+    #[must_use]
+    pub fn new(angle: f64) -> Self {
+        let x = angle.clamp(-ANGLE_LIMIT, ANGLE_LIMIT);
+        let t = x * x;
+        // sin x = x - x^3/3! + x^5/5! - x^7/7! + x^9/9!
+        let sin = x + x * (t * (-1.0 / 6.0 + t * (1.0 / 120.0 + t * (-1.0 / 5040.0 + t * (1.0 / 362_880.0)))));
+        // 1 - cos x = x^2/2! - x^4/4! + x^6/6! - x^8/8! + x^10/10!
+        let versine =
+            t * (0.5 + t * (-1.0 / 24.0 + t * (1.0 / 720.0 + t * (-1.0 / 40_320.0 + t * (1.0 / 3_628_800.0)))));
+        Self { value: x, sin, cos: 1.0 - versine, versine, limited: angle.abs() > ANGLE_LIMIT }
+    }
+}
+
+/// Square root, correctly rounded on every target; negative arguments count as zero.
+#[inline]
+pub(crate) fn sqrt(x: f32) -> f32 {
+    libm::sqrtf(x.max(0.0))
+}
+
+/// Rounds to `f32`, for results that need no more.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "rounding to the result's precision is the purpose")]
+pub(crate) fn single(x: f64) -> f32 {
+    x as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Largest relative error of `f` against `truth` over the whole domain.
+    fn worst(f: impl Fn(f64) -> f64, truth: impl Fn(f64) -> f64) -> f64 {
+        let n = 200_001_u32;
+        (0..=n)
+            .map(|i| ANGLE_LIMIT * (2.0 * f64::from(i) / f64::from(n) - 1.0))
+            .map(|x| (f(x) - truth(x)).abs() / truth(x).abs())
+            .fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn sine_cosine_versine_over_the_whole_domain() {
+        let sin = worst(|x| Angle::new(x).sin, libm::sin);
+        let cos = worst(|x| Angle::new(x).cos, libm::cos);
+        let versine = worst(|x| Angle::new(x).versine, |x| 2.0 * libm::sin(x / 2.0) * libm::sin(x / 2.0));
+        std::println!("largest relative error: sin {sin:.2e}, cos {cos:.2e}, versine {versine:.2e}");
+        assert!(sin < 2.3e-16 && cos < 1.2e-16 && versine < 4.5e-16);
+    }
+
+    #[test]
+    fn odd_and_even_to_the_bit_and_clamped() {
+        for x in [0.0, 1e-9, 0.003, 0.1, 0.125, 0.2] {
+            let (p, n) = (Angle::new(x), Angle::new(-x));
+            assert_eq!((p.sin, p.cos, p.versine), (-n.sin, n.cos, n.versine));
+            assert_eq!(p.limited, x > ANGLE_LIMIT);
+        }
+        assert_eq!(Angle::new(0.2).sin, Angle::new(0.125).sin);
+    }
+}

@@ -1,0 +1,169 @@
+//! The table format: literal bytes, and that no damaged image is taken for a table.
+
+mod kernel_synthetic;
+
+use flangeway::layout::checksum;
+use flangeway::{ContactTable, TableError};
+use flangeway_host::image::write_image;
+use kernel_synthetic::{Synthetic, smallest_axes};
+
+/// CRC-32C bit by bit, from its definition.
+fn crc32c(bytes: impl Iterator<Item = u8>) -> u32 {
+    !bytes.fold(!0, |crc, byte| {
+        (0..8).fold(crc ^ u32::from(byte), |crc, _| (crc >> 1) ^ (0x82F6_3B78 & (crc & 1).wrapping_neg()))
+    })
+}
+
+#[test]
+fn every_byte_of_a_tiny_image() {
+    let tiny = Synthetic::new(smallest_axes(), 1);
+    let image = tiny.image();
+    // Prelude.
+    assert_eq!(image[..12], [b'F', b'W', b'T', b'1', 1, 0, 0, 0, 0xc0, 0x06, 0, 0]);
+    assert_eq!(image.len(), 0x06c0);
+    let crc = crc32c(image[..12].iter().chain(&image[16..]).copied());
+    assert_eq!(image[12..16], crc.to_le_bytes());
+    assert_eq!(image[16..20], [0xd9, 0x01, 0, 0]);
+    // Header, written by hand.
+    let mut bytes = image[..20].to_vec();
+    bytes.extend(b"\x0fflangeway tests\x04none");
+    bytes.extend([7; 32]);
+    for x in [1.435_f64, 2.1e11, 0.28] {
+        bytes.extend(x.to_le_bytes());
+    }
+    bytes.extend([2, 1].repeat(7)); // nodes and bins of seven axes
+    bytes.extend([0, 0]); // samples and seed
+    bytes.extend([0; 24]); // six error figures
+    bytes.extend(b"\x0dmade-up wheel\x0cmade-up rail");
+    bytes.extend([1; 32]);
+    bytes.extend([2; 32]);
+    bytes.extend(0.46_f64.to_le_bytes());
+    bytes.extend(0.75_f64.to_le_bytes());
+    bytes.extend((-0.02_f32).to_le_bytes());
+    bytes.extend((-0.035_f32).to_le_bytes());
+    for scale in tiny.sides[0].scales.as_flattened() {
+        bytes.extend(scale.offset.to_le_bytes());
+        bytes.extend(scale.step.to_le_bytes());
+    }
+    bytes.push(0); // no left side
+    assert_eq!(bytes.len(), 20 + 0x01d9);
+    bytes.resize(512, 0);
+    // Axes: nodes, then one bin each, which leads to cell 0.
+    for node in tiny.axes.concat() {
+        bytes.extend(node.to_le_bytes());
+    }
+    bytes.extend([0; 14]);
+    bytes.resize(640, 0);
+    // Rigid maps.
+    for value in tiny.sides[0].rigid_roll.iter().chain(&tiny.sides[0].rigid_vertical) {
+        bytes.extend(value.to_le_bytes());
+    }
+    bytes.resize(704, 0);
+    for lane in tiny.sides[0].records.as_flattened() {
+        bytes.extend(lane.to_le_bytes());
+    }
+    assert!(bytes == image, "first difference at byte {:?}", bytes.iter().zip(&image).position(|(a, b)| a != b));
+    assert_eq!(tiny.image(), image, "the same parts give the same bytes");
+}
+
+#[test]
+fn truncated_anywhere() {
+    for sides in [1, 2] {
+        let image = Synthetic::new(kernel_synthetic::uneven_axes(), sides).image();
+        assert!(image.len() > 16_384);
+        let later = (0..200).map(|i| 4096 + i * (image.len() - 4097) / 199);
+        for length in (0..4096).chain(later) {
+            match ContactTable::new(&image[..length]) {
+                Err(TableError::NoPrelude { length: found, .. }) => assert!(found == length && length < 20),
+                Err(TableError::Truncated { length: found, stated }) => {
+                    assert!(found == length && stated as usize == image.len());
+                }
+                other => panic!("{length} bytes: {other:?}"),
+            }
+        }
+        assert!(ContactTable::new(&image).is_ok());
+        let longer = [image.as_slice(), &[0]].concat();
+        assert!(matches!(ContactTable::new(&longer), Err(TableError::TrailingBytes { .. })));
+    }
+}
+
+#[test]
+fn one_bit_flipped_anywhere() {
+    for sides in [1, 2] {
+        let mut image = Synthetic::new(smallest_axes(), sides).image();
+        for bit in 0..8 * image.len() {
+            image[bit / 8] ^= 1 << (bit % 8);
+            assert!(ContactTable::new(&image).is_err(), "bit {bit}");
+            image[bit / 8] ^= 1 << (bit % 8);
+        }
+        assert!(ContactTable::new(&image).is_ok());
+    }
+}
+
+/// An image with some bytes replaced and the checksum made good.
+fn forged(image: &[u8], at: usize, bytes: &[u8]) -> Vec<u8> {
+    let mut image = image.to_vec();
+    image[at..at + bytes.len()].copy_from_slice(bytes);
+    let crc = checksum(&image);
+    image[12..16].copy_from_slice(&crc.to_le_bytes());
+    image
+}
+
+#[test]
+fn says_what_is_wrong() {
+    let image = Synthetic::new(smallest_axes(), 1).image();
+    let message = |at: usize, bytes: &[u8]| ContactTable::new(&forged(&image, at, bytes)).unwrap_err().to_string();
+    assert_eq!(message(0, b"\x7fELF"), "not a contact table: it begins with \"\\x7fELF\", not with \"FWT1\"");
+    assert_eq!(message(4, &[2]), "table has format version 2, this program reads version 1");
+    assert_eq!(message(16, &[0xff; 4]), "header length is 4294967295 bytes, at most 1708 fit");
+    assert_eq!(message(16, &[0xd8]), "header at byte 20 cannot be read");
+    assert_eq!(message(16, &[0xda]), "header at byte 20 cannot be read");
+    let gauge = 20 + 16 + 5 + 32;
+    assert_eq!(message(gauge, &f64::NAN.to_le_bytes()), "header field gauge is NaN, plausible are 0.1 to 3");
+    assert_eq!(message(gauge + 24, &[3]), "header describes a table of 2240 bytes, this one has 1728");
+    assert_eq!(message(511, &[9]), "padding at byte 511 is 9, not 0");
+    let node = "lateral axis: node 1 is NaN, not a number above the node before and within plausible bounds";
+    assert_eq!(message(516, &f32::NAN.to_le_bytes()), node);
+    let cover = "rigid yaw axis does not cover the records' axis";
+    assert_eq!(message(512 + 4 * 11, &0.01_f32.to_le_bytes()), cover);
+    assert_eq!(message(512 + 56, &[1, 0]), "lateral axis: bin 0 leads to cell 1, its nodes say otherwise");
+    assert_eq!(
+        message(640, &f32::INFINITY.to_le_bytes()),
+        "rigid map value at byte 640 is inf, plausible are -0.125 to 0.125"
+    );
+    assert_eq!(message(656, &2.0_f32.to_le_bytes()), "rigid map value at byte 656 is 2, plausible are -1 to 1");
+    let lane = "record at byte 704 has 1 in lane 31, which allows no such value";
+    assert_eq!(message(704 + 62, &[1, 0]), lane);
+    let first_scale = 20 + 0x01d9 - 1 - 240;
+    let scale = "scale of indentation (right tread) has offset 3e-5 and step 0e0: the step must be above zero \
+                 and no value beyond 1e-1";
+    assert_eq!(message(first_scale + 4, &[0; 4]), scale);
+    for bad in [f32::NAN, f32::INFINITY, -1e-9, 1.0, 1e30, 3e38] {
+        for scale in 0..30 {
+            for half in [0, 4] {
+                if half == 0 && (bad == -1e-9 || bad == 1.0) {
+                    continue;
+                }
+                let image = forged(&image, first_scale + 8 * scale + half, &(bad * 1e9).to_le_bytes());
+                assert!(matches!(ContactTable::new(&image), Err(TableError::Scale { .. })), "{bad} {scale} {half}");
+            }
+        }
+    }
+}
+
+#[test]
+fn writer_refuses_what_does_not_fit() {
+    let mut table = Synthetic::new(smallest_axes(), 1);
+    let record = table.sides[0].records.pop().unwrap();
+    assert_eq!(write_image(&table.parts()).unwrap_err().to_string(), "records: 480 values, the axes need 512");
+    table.sides[0].records.push(record);
+    table.sides[0].rigid_roll.push(0.0);
+    assert_eq!(write_image(&table.parts()).unwrap_err().to_string(), "rigid roll: 5 values, the axes need 4");
+    table.sides[0].rigid_roll.pop();
+    table.axes[3] = vec![0.0];
+    assert!(write_image(&table.parts()).unwrap_err().to_string().starts_with("vertical axis: 1 nodes"));
+    table.axes[3] = vec![0.0, 0.0001];
+    table.sides[0].geometry.nominal_radius = 46.0;
+    let message = write_image(&table.parts()).unwrap_err().to_string();
+    assert_eq!(message, "table: header field geometry.nominal_radius (right) is 46, plausible are 0.05 to 2");
+}

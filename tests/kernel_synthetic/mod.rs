@@ -1,0 +1,215 @@
+//! Made-up tables for the kernel's tests: every channel is a multilinear function of the table's coordinates, so the
+//! lookup must reproduce it to the quantisation.
+#![allow(dead_code, unreachable_pub, reason = "each test uses a part of this")]
+
+use flangeway::{
+    AxisCounts, CHANNELS, CONFORMAL_LANE, Channel, Coordinates, ErrorFigures, Header, LANES, Material, SLOTS, Scales,
+    SideHeader, Slot, WheelGeometry,
+};
+use flangeway_host::image::{ImageParts, SideParts, quantise, scale_over, scale_through_zero, write_image};
+
+/// A table's parts, owned.
+pub struct Synthetic {
+    pub axes: [Vec<f32>; 7],
+    pub sides: Vec<SyntheticSide>,
+}
+
+/// A side's parts, owned.
+pub struct SyntheticSide {
+    pub geometry: WheelGeometry,
+    pub scales: Scales,
+    pub rigid_roll: Vec<f32>,
+    pub rigid_vertical: Vec<f32>,
+    pub records: Vec<[i16; LANES]>,
+}
+
+/// Uneven axes of moderate size.
+pub fn uneven_axes() -> [Vec<f32>; 7] {
+    [
+        vec![-0.012, -0.007, -0.006, -0.0035, 0.0, 0.004, 0.0081, 0.0112],
+        vec![0.0, 0.002, 0.01, 0.04],
+        vec![-0.002, 0.0005, 0.003],
+        vec![-0.0001, 0.00005, 0.0003],
+        vec![-0.015, -0.01, -0.0012, 0.003, 0.009, 0.015],
+        vec![0.0, 0.015, 0.05],
+        vec![-0.004, 0.004],
+    ]
+}
+
+/// The smallest axes there are.
+pub fn smallest_axes() -> [Vec<f32>; 7] {
+    let pair = |a: f32, b: f32| vec![a, b];
+    [
+        pair(-0.01, 0.01),
+        pair(0.0, 0.03125),
+        pair(-0.0025, 0.0025),
+        pair(0.0, 0.00025),
+        pair(-0.01, 0.01),
+        pair(0.0, 0.03125),
+        pair(-0.0025, 0.0025),
+    ]
+}
+
+/// Rigid roll, rad: bilinear.
+pub fn rigid_roll(u: f64, yaw: f64) -> f64 {
+    0.03 * u - 0.5 * u * yaw + 0.0001
+}
+
+/// Rigid vertical displacement, m: trilinear.
+pub fn rigid_vertical(u: f64, yaw: f64, roll: f64) -> f64 {
+    0.05 * u + 0.01 * yaw - 0.1 * roll + 0.7 * u * yaw - u * roll + 3.0 * u * yaw * roll
+}
+
+/// Centre and amplitude of a channel.
+fn span(channel: Channel) -> (f64, f64) {
+    match channel {
+        Channel::Indentation => (3e-5, 4e-4),
+        Channel::Stiffness => (9e10, 4e10),
+        Channel::SemiAxisAlong => (0.5, 0.2),
+        Channel::SemiAxisAcross => (0.3, 0.2),
+        Channel::Longitudinal => (0.0, 0.03),
+        Channel::WheelCoordinate => (-0.01, 0.03),
+        Channel::RadiusOffset => (0.005, 0.01),
+        Channel::Angle => (-0.4, 0.35),
+        Channel::WheelCurvature => (10.0, 40.0),
+        Channel::RailCurvature => (5.0, 20.0),
+    }
+}
+
+/// Value of a channel at normalised coordinates (-1 to 1 over each axis), multilinear; `seed` tells sides apart.
+pub fn value(slot: Slot, channel: Channel, n: [f64; 4], seed: f64) -> f64 {
+    let (centre, amplitude) = span(channel);
+    let k = 1.0 + slot.index() as f64 + 0.1 * channel.index() as f64 + seed;
+    // Any irregular numbers in -1..1 will do.
+    let wave = |i: f64| (k * i).sin();
+    let [u, p, r, z] = n;
+    let sum = wave(1.0) * u
+        + wave(2.0) * p
+        + wave(3.0) * r
+        + 2.0 * z
+        + wave(4.0) * u * p
+        + wave(5.0) * r * z
+        + wave(6.0) * u * p * r * z;
+    centre + amplitude * sum / 8.0
+}
+
+/// A coordinate normalised to -1..1 over an axis.
+pub fn normalised(axis: &[f32], x: f64) -> f64 {
+    let (a, b) = (f64::from(axis[0]), f64::from(axis[axis.len() - 1]));
+    2.0 * (x - a) / (b - a) - 1.0
+}
+
+impl Synthetic {
+    /// A table over these axes with one or two sides.
+    pub fn new(axes: [Vec<f32>; 7], sides: usize) -> Self {
+        let sides = (0..sides).map(|side| SyntheticSide::new(&axes, 0.37 * side as f64)).collect();
+        Self { axes, sides }
+    }
+
+    /// A mirrored table with uneven axes.
+    pub fn uneven() -> Self {
+        Self::new(uneven_axes(), 1)
+    }
+
+    /// Normalised coordinates of table coordinates.
+    pub fn normalised(&self, at: &Coordinates) -> [f64; 4] {
+        let x = [at.lateral, at.yaw, at.roll_offset, at.vertical];
+        std::array::from_fn(|i| normalised(&self.axes[i], x[i]))
+    }
+
+    /// The header, its axis counts not yet filled in.
+    pub fn header(&self) -> Header<'static> {
+        Header {
+            generator: "flangeway tests",
+            solver: "none",
+            recipe_sha256: [7; 32],
+            gauge: 1.435,
+            material: Material { young_modulus: 2.1e11, poisson_ratio: 0.28 },
+            axes: [AxisCounts::default(); 7],
+            errors: ErrorFigures::default(),
+            right: self.sides[0].header(),
+            left: self.sides.get(1).map(SyntheticSide::header),
+        }
+    }
+
+    /// The image.
+    pub fn image(&self) -> Vec<u8> {
+        write_image(&self.parts()).unwrap()
+    }
+
+    /// The writer's input.
+    pub fn parts(&self) -> ImageParts<'_> {
+        ImageParts {
+            header: self.header(),
+            axes: std::array::from_fn(|i| self.axes[i].as_slice()),
+            right: self.sides[0].parts(),
+            left: self.sides.get(1).map(SyntheticSide::parts),
+        }
+    }
+}
+
+impl SyntheticSide {
+    fn new(axes: &[Vec<f32>; 7], seed: f64) -> Self {
+        let mut scales: Scales = [[scale_over(0.0, 1.0); CHANNELS]; SLOTS];
+        for slot in Slot::ALL {
+            for channel in Channel::ALL {
+                let (centre, amplitude) = span(channel);
+                scales[slot.index()][channel.index()] = match channel {
+                    Channel::Stiffness => scale_through_zero(centre + amplitude),
+                    _ => scale_over(centre - amplitude, centre + amplitude),
+                };
+            }
+        }
+        let mut records = Vec::new();
+        for u in &axes[0] {
+            for p in &axes[1] {
+                for r in &axes[2] {
+                    for z in &axes[3] {
+                        let x = [u, p, r, z].map(|x| f64::from(*x));
+                        let n = std::array::from_fn(|i| normalised(&axes[i], x[i]));
+                        let mut record = [0; LANES];
+                        for slot in Slot::ALL {
+                            for channel in Channel::ALL {
+                                let scale = &scales[slot.index()][channel.index()];
+                                record[channel.lane(slot)] = quantise(scale, value(slot, channel, n, seed));
+                            }
+                        }
+                        record[CONFORMAL_LANE] = if n[0] > 0.9 { 32767 } else { 0 };
+                        records.push(record);
+                    }
+                }
+            }
+        }
+        let [_, _, _, _, lateral, yaw, roll] = axes.each_ref().map(|axis| axis.iter().map(|x| f64::from(*x)));
+        let mut maps = (Vec::new(), Vec::new());
+        for u in lateral {
+            for p in yaw.clone() {
+                maps.0.push(rigid_roll(u, p) as f32);
+                maps.1.extend(roll.clone().map(|r| rigid_vertical(u, p, r) as f32));
+            }
+        }
+        Self {
+            geometry: WheelGeometry { nominal_radius: 0.46, lateral_position: 0.75 + 0.001 * seed },
+            scales,
+            rigid_roll: maps.0,
+            rigid_vertical: maps.1,
+            records,
+        }
+    }
+
+    fn header(&self) -> SideHeader<'static> {
+        SideHeader {
+            wheel: "made-up wheel",
+            rail: "made-up rail",
+            wheel_sha256: [1; 32],
+            rail_sha256: [2; 32],
+            geometry: self.geometry,
+            slot_boundaries: [-0.02, -0.035],
+            scales: self.scales,
+        }
+    }
+
+    fn parts(&self) -> SideParts<'_> {
+        SideParts { rigid_roll: &self.rigid_roll, rigid_vertical: &self.rigid_vertical, records: &self.records }
+    }
+}
