@@ -1,0 +1,104 @@
+//! The commands of the `flangeway` program, one module each. Machine output goes to stdout or `-o`, words and
+//! progress to stderr.
+
+pub mod compile;
+pub mod inspect;
+pub mod lookup;
+pub mod profile;
+pub mod rigid;
+pub mod solve;
+pub mod verify;
+
+use std::path::Path;
+
+use clap::{Parser, Subcommand};
+use flangeway::ContactTable;
+
+use crate::error::{Error, Result};
+
+/// Wheel-rail contact tables for real-time simulators.
+#[derive(Debug, Parser)]
+#[command(name = "flangeway", version, about)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+/// How a command ended that did not fail on its input.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// Everything was done.
+    Done,
+    /// The work was done, and what it checked does not hold.
+    CheckFailed,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Compile a contact table from a recipe
+    Compile(compile::CompileArgs),
+    /// Print what a table says of itself
+    Inspect(inspect::InspectArgs),
+    /// Contacts of poses by a table
+    Lookup(lookup::LookupArgs),
+    /// Say what a profile file was taken for, and draw it with its slope and curvature
+    Profile(profile::ProfileArgs),
+    /// Rigid contact: height and roll of the wheelset over lateral position and yaw
+    Rigid(rigid::RigidArgs),
+    /// Contacts of poses by the direct elastic solver
+    Solve(solve::SolveArgs),
+    /// Measure a table against the direct solver over random poses
+    Verify(verify::VerifyArgs),
+}
+
+impl Cli {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// On bad input, with the file, the line or field and the value.
+    pub fn run(&self) -> Result<Outcome> {
+        match &self.command {
+            Command::Compile(args) => compile::run(args)?,
+            Command::Inspect(args) => inspect::run(args)?,
+            Command::Lookup(args) => lookup::run(args)?,
+            Command::Profile(args) => profile::run(args)?,
+            Command::Rigid(args) => rigid::run(args)?,
+            Command::Solve(args) => solve::run(args)?,
+            Command::Verify(args) => return verify::run(args),
+        }
+        Ok(Outcome::Done)
+    }
+}
+
+/// A table file read whole, to be checked by the kernel.
+fn read_table(path: &Path) -> Result<Vec<u8>> {
+    std::fs::read(path).map_err(|e| Error::file(path, e.to_string()))
+}
+
+/// The kernel's view of a table file.
+fn view_table<'a>(path: &Path, image: &'a [u8]) -> Result<ContactTable<'a>> {
+    ContactTable::new(image).map_err(|e| Error::file(path, e.to_string()))
+}
+
+/// Writes a JSON document to stdout.
+fn print_json(value: &serde_json::Value) {
+    println!("{value:#}");
+}
+
+/// A wheel of the wheelset, as an option.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum SideArg {
+    /// The wheel at positive y
+    Right,
+    /// The wheel at negative y
+    Left,
+}
+
+/// The sides that an optional `--side` names: both without it.
+fn sides(side: Option<SideArg>) -> Vec<flangeway::Side> {
+    match side {
+        Some(SideArg::Right) => vec![flangeway::Side::Right],
+        Some(SideArg::Left) => vec![flangeway::Side::Left],
+        None => flangeway::Side::ALL.to_vec(),
+    }
+}
