@@ -126,6 +126,12 @@ impl Curve {
         }
     }
 
+    /// Angle (rad) by which the tangent turns from one parameter to another, positive where the body is convex.
+    pub fn turn(&self, from: f64, to: f64) -> f64 {
+        let [a, b] = [from, to].map(|t| self.jet(t.clamp(0.0, self.length)).first);
+        self.convex_sign * libm::atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1])
+    }
+
     /// Position and derivatives at `t`, extrapolated by the end segments outside the curve.
     #[inline]
     pub(crate) fn jet(&self, t: f64) -> Jet {
@@ -247,7 +253,7 @@ mod tests {
 
     fn arc(radius: f64, from: f64, to: f64, count: usize) -> Vec<[f64; 2]> {
         let angle = |i: usize| from + (to - from) * i as f64 / (count - 1) as f64;
-        (0..count).map(|i| [radius * angle(i).sin(), radius * (1.0 - angle(i).cos())]).collect()
+        (0..count).map(|i| [radius * libm::sin(angle(i)), radius * (1.0 - libm::cos(angle(i)))]).collect()
     }
 
     #[test]
@@ -255,7 +261,7 @@ mod tests {
         let rail = Curve::fit(&profile(ProfileKind::Rail, arc(0.08, -0.6, 0.9, 400), vec![]), 0.0).unwrap();
         for i in 1..100 {
             let p = rail.at(rail.length() * f64::from(i) / 100.0);
-            assert!((p.y.hypot(p.z - 0.08) - 0.08).abs() < 1e-12);
+            assert!((libm::hypot(p.y, p.z - 0.08) - 0.08).abs() < 1e-12);
             assert!((p.curvature * 0.08 - 1.0).abs() < 1e-4, "{}", p.curvature);
             assert!((p.tangent[0] * p.y + p.tangent[1] * (p.z - 0.08)).abs() < 1e-10);
         }
@@ -279,15 +285,15 @@ mod tests {
     fn smoothing_leaves_the_points_by_what_was_allowed() {
         let mut points = arc(0.3, -0.1, 0.1, 300);
         for (i, p) in points.iter_mut().enumerate() {
-            p[1] += 1e-5 * ((i * 7919 % 13) as f64 / 6.0 - 1.0);
+            p[1] += 1e-5 * libm::sin(1e4 * libm::sin(i as f64 * 12.9898));
         }
         let rough = Curve::fit(&profile(ProfileKind::Rail, points.clone(), vec![]), 0.0).unwrap();
-        let smooth = Curve::fit(&profile(ProfileKind::Rail, points, vec![]), 6e-6).unwrap();
+        let smooth = Curve::fit(&profile(ProfileKind::Rail, points, vec![]), 7e-6).unwrap();
         let spread = |c: &Curve| {
             (10..90).map(|i| (c.at(c.length() * f64::from(i) / 100.0).curvature * 0.3 - 1.0).abs()).fold(0.0, f64::max)
         };
-        assert!((smooth.residual() / 6e-6 - 1.0).abs() < 0.01, "{}", smooth.residual());
-        assert!(spread(&rough) > 10.0 && spread(&smooth) < 0.5, "{} {}", spread(&rough), spread(&smooth));
+        assert!((smooth.residual() / 7e-6 - 1.0).abs() < 0.01, "{}", smooth.residual());
+        assert!(spread(&rough) > 100.0 && spread(&smooth) < 2.0, "{} {}", spread(&rough), spread(&smooth));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use crate::contact::{Dimension, Settings};
+use crate::contact::{Curvature, Dimension, Settings};
 use crate::error::{Error, Result};
 use crate::hertz::Material;
 use crate::profile::{LengthUnit, ReadOptions};
@@ -139,6 +139,9 @@ pub struct SolverRecipe {
     /// `"3d"` or `"2d"`.
     #[serde(default)]
     pub dimension: Dimension,
+    /// `"mean"` over the contact, or `"local"` as in the paper.
+    #[serde(default)]
+    pub curvature: Curvature,
     /// Smallest combined principal curvature (1/m) taken for Hertz.
     pub curvature_floor_per_m: Option<f64>,
 }
@@ -283,6 +286,7 @@ impl Recipe {
         let default = Settings::default();
         Settings {
             dimension: self.solver.dimension,
+            curvature: self.solver.curvature,
             curvature_floor: self.solver.curvature_floor_per_m.unwrap_or(default.curvature_floor),
             ..default
         }

@@ -1,5 +1,6 @@
 //! What the profile readers recognise and what they refuse. No input makes them panic, and what they accept is a
 //! contour that the curve can be fitted to.
+#![allow(clippy::disallowed_methods, reason = "no table is made of these numbers")]
 
 use std::path::Path;
 

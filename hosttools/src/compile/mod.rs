@@ -14,7 +14,7 @@ use sha2::{Digest, Sha256};
 
 pub use axes::{Axes, Uniform};
 
-use crate::contact::{Dimension, SlotState};
+use crate::contact::{Curvature, Dimension, SlotState};
 use crate::error::{Error, Result};
 use crate::image::{ImageParts, OwnedRigidMaps, SideParts, write_image};
 use crate::pair::Pair;
@@ -104,8 +104,9 @@ fn bar(length: usize, what: &'static str) -> ProgressBar {
 fn image(recipe: &Recipe, pair: &Pair, axes: &Axes, sides: &[CompiledSide], errors: ErrorFigures) -> Result<Vec<u8>> {
     let settings = pair.body(Side::Right).settings();
     let solver = format!(
-        "hertz, {}, curvature floor {} 1/m",
+        "hertz, {}, {} curvature, curvature floor {} 1/m",
         if settings.dimension == Dimension::Two { "2d" } else { "3d" },
+        if settings.curvature == Curvature::Mean { "mean" } else { "local" },
         settings.curvature_floor
     );
     let side_header = |side: Side, compiled: &CompiledSide| {

@@ -35,6 +35,17 @@ pub enum Dimension {
     Three,
 }
 
+/// Which curvatures of the profiles Hertz is given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Curvature {
+    /// Averaged over about the width of the contact.
+    #[default]
+    Mean,
+    /// At the point of greatest overlap (the paper).
+    Local,
+}
+
 /// Settings of the direct solver.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -42,13 +53,16 @@ pub struct Settings {
     pub dimension: Dimension,
     /// How the greatest overlap around the wheel is found.
     pub method: Method,
-    /// Smallest combined principal curvature (1/m) that Hertz is asked about: the policy for conformal contact.
+    /// Curvatures at the point, or averaged over the contact.
+    pub curvature: Curvature,
+    /// Smallest combined principal curvature (1/m) that Hertz is asked about: the policy for conformal contact. A
+    /// smaller or negative one is taken as this, and the contact is flagged.
     pub curvature_floor: f64,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { dimension: Dimension::Three, method: Method::Locus, curvature_floor: 1.0 }
+        Self { dimension: Dimension::Three, method: Method::Locus, curvature: Curvature::Mean, curvature_floor: 0.1 }
     }
 }
 

@@ -157,7 +157,7 @@ mod tests {
         let points = (0..=400)
             .map(|i| {
                 let angle = -0.5 + f64::from(i) / 400.0;
-                [0.08 * angle.sin(), 0.08 * (1.0 - angle.cos())]
+                [0.08 * libm::sin(angle), 0.08 * (1.0 - libm::cos(angle))]
             })
             .collect();
         let profile = Profile {
@@ -173,11 +173,11 @@ mod tests {
         for (angle, depth) in [(0.0, 1e-4), (0.3, 2e-5), (-0.37, -1e-3), (0.2, -1.4e-3), (0.1, 1e-3)] {
             let (angle, depth): (f64, f64) = (angle, depth);
             let r = 0.08 - depth;
-            let p = [r * angle.sin(), 0.08 - r * angle.cos()];
+            let p = [r * libm::sin(angle), 0.08 - r * libm::cos(angle)];
             let Nearness::Near(guess) = rail.nearness(p) else { panic!("{p:?} is near") };
             let foot = rail.foot(p, guess, 3).unwrap();
             assert!((foot.depth - depth).abs() < 1e-12, "{} {depth}", foot.depth);
-            assert!((foot.tangent[1].atan2(foot.tangent[0]) - angle).abs() < 1e-9);
+            assert!((libm::atan2(foot.tangent[1], foot.tangent[0]) - angle).abs() < 1e-9);
         }
         assert_eq!(rail.nearness([0.0, -0.005]), Nearness::Far);
         assert_eq!(rail.nearness([0.5, 0.0]), Nearness::Outside);

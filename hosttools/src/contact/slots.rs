@@ -8,16 +8,33 @@
 //! between them (positive while they share a zone) and e = δ - σ their height above it, peak i keeps the share
 //!
 //! ```text
-//! w_i = Π_j [1 - max(σ, 0) / δ_i · e_j / (e_i + e_j)]
+//! w_i = min over j of [1 - max(σ, 0) / δ_i · e_j / (e_i + e_j)]
 //! ```
 //! Separate zones (σ ≤ 0) keep everything, as in the paper; a peak that drowns in the flank of another (e_i → 0) fades
-//! to nothing; two equal peaks are treated alike. So the total force is continuous when zones merge, when a peak
+//! to nothing; two equal peaks are treated alike; a shoulder of another peak takes nothing away that this one does not
+//! take already. So the total force is continuous when zones merge, when a peak
 //! appears on a flank, and when two peaks change rank.
+//!
+//! **Curvatures** jump at every junction of arcs of a real profile, and Hertz's force with them. They are therefore
+//! averaged over about the width of the contact ([`Curvature::Mean`]), which is continuous, nearer to CONTACT, and
+//! positive nearly everywhere; the paper's curvatures at the point ([`Curvature::Local`]) can be asked for.
 
 use super::rail::FAR;
 use super::ridge::{Ridge, RidgePoint, Sample};
-use super::{Body, SLOTS};
+use super::{Body, Curvature, SLOTS};
+use crate::curve::Curve;
 use crate::hertz;
+
+/// Indentation (m) that a gap or a lighter contact is taken for where curvatures are averaged.
+const LEAST_DEPTH: f64 = 2e-6;
+
+/// The share q of the indentation that the gap reaches at the ends of the averaging width. Measured on the Manchester
+/// rows (ARCHITECTURE.md): of 0.01 to 0.5, 0.2 is nearest to CONTACT.
+const AVERAGED_SHARE: f64 = 0.2;
+
+/// First shell (m) of the averaging width, and where it ends at the latest.
+const FIRST_SHELL: f64 = 0.1e-3;
+const WIDEST_AVERAGE: f64 = 5e-3;
 
 /// An edge counts as higher than a peak from this much on (m), well above rounding, well below an indentation.
 const LEANING: f64 = 1e-10;
@@ -92,27 +109,83 @@ impl Peak {
     }
 }
 
-/// What one point of the ridge would carry as a contact.
-pub(super) fn hertzian(body: &Body, ridge: &Ridge<'_>, point: RidgePoint) -> SlotState {
-    let rail_curvature = body.rail.curve().at(point.foot.t).curvature;
-    let wheel = &point.wheel;
-    // Second derivatives of the gap in the tangent plane: x along the track, y across. The wheel's principal
-    // directions are turned by α against them (Johnson 4.1); the rail is straight along x.
-    let along = ridge.orientation().along(point.surface.around);
-    let (cos2, sin2) = (along * along, 1.0 - along * along);
-    let rolling = wheel.normal[1] / wheel.radius;
-    let xx = rolling * cos2 + wheel.curvature * sin2;
-    let yy = rolling * sin2 + wheel.curvature * cos2 + rail_curvature;
-    let xy2 = (rolling - wheel.curvature).powi(2) * cos2 * sin2;
+/// Principal combined curvatures at a contact, from the curvatures of wheel and rail profile.
+struct Combined {
+    half_a: f64,
+    half_b: f64,
+    along_is_long: bool,
+    conformal: bool,
+}
+
+/// Second derivatives of the gap in the tangent plane, x along the track and y across. The wheel's principal
+/// directions are turned by α against them (Johnson 4.1); the rail is straight along x.
+///
+/// ```text
+/// κ_xx = κ_roll cos²α + κ_wheel sin²α,   κ_yy = κ_roll sin²α + κ_wheel cos²α + κ_rail
+/// κ_xy = (κ_roll - κ_wheel) sin α cos α,   2 A, 2 B = the eigenvalues
+/// ```
+fn combine(rolling: f64, wheel: f64, rail: f64, cos2: f64, floor: f64) -> Combined {
+    let sin2 = 1.0 - cos2;
+    let xx = rolling * cos2 + wheel * sin2;
+    let yy = rolling * sin2 + wheel * cos2 + rail;
+    let xy2 = (rolling - wheel).powi(2) * cos2 * sin2;
     let (mean, spread) = (0.5 * (xx + yy), (0.25 * (xx - yy).powi(2) + xy2).sqrt());
     let (small, large) = (mean - spread, mean + spread);
     // Policy: a combined curvature that is not positive, or less than the floor, is taken as the floor.
-    let floor = body.settings.curvature_floor;
-    let conformal = small < floor;
-    let (half_a, half_b) = (0.5 * small.max(floor), 0.5 * large.max(floor));
-    let c = hertz::coefficients(half_a / half_b);
-    let size = 1.0 / (half_a + half_b).sqrt();
-    let (semi_axis_x, semi_axis_y) = if xx <= yy { (c.long, c.short) } else { (c.short, c.long) };
+    Combined {
+        half_a: 0.5 * small.max(floor),
+        half_b: 0.5 * large.max(floor),
+        along_is_long: xx <= yy,
+        conformal: small < floor,
+    }
+}
+
+/// Half of the width (m) over which the curvatures of a contact are averaged.
+///
+/// With Θ(h) the turn of wheel and rail against each other over h to both sides of the contact, Θ / 2h is the mean
+/// curvature, and by it the gap at h is to be the share q of the indentation:
+///
+/// ```text
+/// h Θ(h) / 4 = q δ
+/// ```
+/// Θ is summed over shells of growing width, where it is taken as linear, and only what bends the surfaces apart
+/// counts, so that h Θ(h) rises, there is one solution, and it is continuous in the pose.
+fn averaging_width(body: &Body, point: &RidgePoint) -> f64 {
+    let target = 4.0 * AVERAGED_SHARE * point.depth().max(LEAST_DEPTH);
+    let (wheel, rail) = (body.wheel.curve(), body.rail.curve());
+    let (mut inner, mut turn, mut outer) = (0.0, 0.0, FIRST_SHELL);
+    while inner < WIDEST_AVERAGE {
+        let shell = |curve: &Curve, t: f64| curve.turn(t + inner, t + outer) + curve.turn(t - outer, t - inner);
+        let gained = (shell(wheel, point.wheel.t) + shell(rail, point.foot.t)).max(0.0);
+        if outer * (turn + gained) >= target {
+            // h (turn + slope (h - inner)) = target
+            let slope = gained / (outer - inner);
+            let half = 0.5 * (turn - slope * inner);
+            return target / (half + (half * half + slope * target).sqrt());
+        }
+        turn += gained;
+        (inner, outer) = (outer, 1.5 * outer);
+    }
+    inner
+}
+
+/// What one point of the ridge would carry as a contact.
+pub(super) fn hertzian(body: &Body, ridge: &Ridge<'_>, point: RidgePoint) -> SlotState {
+    let wheel = &point.wheel;
+    let rolling = wheel.normal[1] / wheel.radius;
+    let along = ridge.orientation().along(point.surface.around);
+    let (wheel_curvature, rail_curvature) = match body.settings.curvature {
+        Curvature::Local => (wheel.curvature, body.rail.curve().at(point.foot.t).curvature),
+        Curvature::Mean => {
+            let half = averaging_width(body, &point);
+            let mean = |curve: &Curve, t: f64| curve.turn(t - half, t + half) / (2.0 * half);
+            (mean(body.wheel.curve(), wheel.t), mean(body.rail.curve(), point.foot.t))
+        }
+    };
+    let combined = combine(rolling, wheel_curvature, rail_curvature, along * along, body.settings.curvature_floor);
+    let c = hertz::coefficients(combined.half_a / combined.half_b);
+    let size = 1.0 / (combined.half_a + combined.half_b).sqrt();
+    let (semi_axis_x, semi_axis_y) = if combined.along_is_long { (c.long, c.short) } else { (c.short, c.long) };
     SlotState {
         indentation: point.depth(),
         stiffness: c.normal * body.contact_modulus * size,
@@ -122,9 +195,9 @@ pub(super) fn hertzian(body: &Body, ridge: &Ridge<'_>, point: RidgePoint) -> Slo
         profile: wheel.s,
         radius_offset: wheel.radius - body.wheel.geometry().nominal_radius,
         angle: libm::atan2(point.foot.tangent[1], point.foot.tangent[0]),
-        wheel_curvature: wheel.curvature,
+        wheel_curvature,
         rail_curvature,
-        conformal,
+        conformal: combined.conformal,
         present: true,
     }
 }
@@ -160,7 +233,7 @@ pub(super) fn peaks(body: &Body, ridge: &Ridge<'_>, centre: f64, samples: &[Samp
             let saddle = lowest.min(di).min(dj).max(0.0);
             let (ei, ej) = (di - saddle, dj - saddle);
             let other = if ei + ej > 0.0 { ej / (ei + ej) } else { 0.5 };
-            peaks[i].share *= 1.0 - saddle / di * other;
+            peaks[i].share = peaks[i].share.min(1.0 - saddle / di * other);
         }
     }
     peaks

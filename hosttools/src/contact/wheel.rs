@@ -188,7 +188,7 @@ mod tests {
     use super::*;
 
     fn point(axial: f64, radius: f64, slope: f64) -> WheelPoint {
-        let norm = slope.hypot(1.0);
+        let norm = libm::hypot(slope, 1.0);
         WheelPoint { t: 0.0, s: 0.0, axial, radius, normal: [-slope / norm, 1.0 / norm], curvature: 0.0 }
     }
 
@@ -203,7 +203,7 @@ mod tests {
             // Rotation matrices, written out independently of `place` and `normal`.
             let (n, q) = ([p.normal[1] * sin, p.normal[0], p.normal[1] * cos], [0.46 * sin, 0.72, 0.46 * cos]);
             let turn = |v: [f64; 3]| {
-                let (cr, sr, cy, sy) = (f64::cos(roll), f64::sin(roll), f64::cos(yaw), f64::sin(yaw));
+                let (cr, sr, cy, sy) = (libm::cos(roll), libm::sin(roll), libm::cos(yaw), libm::sin(yaw));
                 let (y, z) = (v[1] * cr - v[2] * sr, v[1] * sr + v[2] * cr);
                 [v[0] * cy - y * sy, v[0] * sy + y * cy, z]
             };
@@ -215,7 +215,7 @@ mod tests {
             let cut = o.section(&p, s.position[0]).unwrap();
             assert!((0..3).all(|k| (s.position[k] - cut.position[k]).abs() < 1e-12));
             if roll == 0.0 {
-                assert!((sin + yaw.tan() * slope).abs() < 1e-14);
+                assert!((sin + libm::tan(yaw) * slope).abs() < 1e-14);
             }
         }
     }

@@ -81,7 +81,7 @@ pub(super) fn read(path: &Path, content: &str) -> Result<Reading> {
         }
     }
     if section != Section::Finished {
-        return Err(Error::line(path, last_line, "the file ends before its spline.end"));
+        return Err(Error::line(path, last_line.max(1), "the file ends before its spline.end"));
     }
     if commented_out > 0 {
         reading.recognised.push(format!("{} commented out in the file", counted(commented_out, "point")));

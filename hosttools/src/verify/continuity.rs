@@ -13,13 +13,28 @@ const STEP: f64 = 1e-8;
 const LENGTH: f64 = 1e-3;
 const POINTS: usize = 64;
 
-/// Largest relative change of total force over [`STEP`].
+/// A relative change of total force over [`STEP`], and the canonical pose at which it begins.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Change {
+    /// |ΔN| / N.
+    pub relative: f64,
+    /// The pose.
+    pub pose: Pose,
+}
+
+impl Change {
+    fn max(self, other: Self) -> Self {
+        if other.relative > self.relative { other } else { self }
+    }
+}
+
+/// Largest changes found.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Continuity {
     /// Of the table.
-    pub table: f64,
+    pub table: Change,
     /// Of the direct solver.
-    pub direct: f64,
+    pub direct: Change,
 }
 
 impl Continuity {
@@ -71,18 +86,22 @@ fn line(table: &ContactTable<'_>, pair: &Pair, side: Side, seed: u64, index: usi
         f64::from(table.contacts(side, &p).total_normal_force())
     };
     let by_solver = |p: Pose| pair.column(side, &p).total_force(p.vertical);
-    Some(Continuity { table: largest_change(|s| by_table(at(s))), direct: largest_change(|s| by_solver(at(s))) })
+    let change = |force: &dyn Fn(Pose) -> f64| {
+        let (relative, s) = largest_change(|s| force(at(s)));
+        Change { relative, pose: at(s) }
+    };
+    Some(Continuity { table: change(&by_table), direct: change(&by_solver) })
 }
 
-/// Bisects towards the largest relative change of `force` until the interval is [`STEP`].
-fn largest_change(force: impl Fn(f64) -> f64) -> f64 {
+/// Bisects towards the largest relative change of `force` until the interval is about [`STEP`]: the change and where.
+fn largest_change(force: impl Fn(f64) -> f64) -> (f64, f64) {
     let relative = |a: f64, b: f64| if a.max(b) < LOADS[0] { 0.0 } else { (b - a).abs() / a.max(b) };
     let s = |i: usize| LENGTH * (i as f64 / POINTS as f64 - 0.5);
     let values: Vec<f64> = (0..=POINTS).map(|i| force(s(i))).collect();
     let Some(start) =
         (0..POINTS).max_by(|&i, &j| relative(values[i], values[i + 1]).total_cmp(&relative(values[j], values[j + 1])))
     else {
-        return 0.0;
+        return (0.0, 0.0);
     };
     let (mut low, mut high) = (s(start), s(start + 1));
     let (mut f_low, mut f_high) = (values[start], values[start + 1]);
@@ -91,7 +110,9 @@ fn largest_change(force: impl Fn(f64) -> f64) -> f64 {
         let f = force(middle);
         if relative(f_low, f) > relative(f, f_high) { (high, f_high) = (middle, f) } else { (low, f_low) = (middle, f) }
     }
-    relative(force(low), force(low + STEP)).max(relative(force(low + STEP), force(low + 2.0 * STEP)))
+    let step = |s: f64| (relative(force(s), force(s + STEP)), s);
+    let (first, second) = (step(low), step(low + STEP));
+    if first.0 > second.0 { first } else { second }
 }
 
 #[cfg(test)]
@@ -101,8 +122,8 @@ mod tests {
     #[test]
     fn a_jump_is_found_and_a_slope_is_not_one() {
         let jump = |s: f64| if s > 1.234e-4 { 1.1e4 } else { 1e4 };
-        assert!((largest_change(jump) - 1.0 / 11.0).abs() < 1e-9);
+        assert!((largest_change(jump).0 - 1.0 / 11.0).abs() < 1e-9);
         let slope = |s: f64| 1e4 * (1.0 + 1e3 * s);
-        assert!(largest_change(slope) < 3e-5);
+        assert!(largest_change(slope).0 < 3e-5);
     }
 }

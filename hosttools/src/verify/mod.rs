@@ -18,7 +18,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
-pub use continuity::{Continuity, continuity};
+pub use continuity::{Change, Continuity, continuity};
 pub use load::height_for_load;
 pub use statistics::{Quantiles, quantile};
 
@@ -201,8 +201,8 @@ pub fn report(
         angle_rad: of(|s| s.angle),
         semi_axes: of(|s| s.semi_axes),
         other_count: samples.iter().filter(|s| s.other_count).count() as f64 / samples.len().max(1) as f64,
-        continuity: worst.table,
-        continuity_direct: worst.direct,
+        continuity: worst.table.relative,
+        continuity_direct: worst.direct.relative,
     };
     (report, samples)
 }

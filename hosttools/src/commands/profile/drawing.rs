@@ -80,7 +80,7 @@ fn render(svg: &mut String, profile: &Profile, curve: &Curve) -> Drawn<u32> {
         joints.iter().map(|p| Circle::new((mm(p.y), mm(p.z)), 5 * FINENESS, JOINT.stroke_width(2 * FINENESS))),
     )?;
 
-    let angle = |p: &CurvePoint| p.tangent[1].atan2(p.tangent[0]).to_degrees();
+    let angle = |p: &CurvePoint| libm::atan2(p.tangent[1], p.tangent[0]).to_degrees();
     let range = padded(samples.iter().map(angle), 0.06);
     let mut chart = panel(&slope, "Slope angle, arctan(dz/dy)", y.clone(), range.clone(), "angle (deg)")?;
     chart.draw_series(joints.iter().map(|p| marker(mm(p.y), &range)))?;
