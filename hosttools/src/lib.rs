@@ -13,6 +13,7 @@ pub mod poses;
 pub mod profile;
 pub mod progress;
 pub mod recipe;
+pub mod report;
 pub mod rigid;
 pub mod spline;
 pub mod verify;

@@ -170,6 +170,8 @@ pub struct Grid {
     /// Bytes that `"auto"` may spend.
     #[serde(default = "max_bytes")]
     pub max_bytes: u64,
+    /// 95 % quantile of the relative force error at which `"auto"` has done enough.
+    pub max_force_error_p95: Option<f64>,
 }
 
 /// One axis of the table.
@@ -202,8 +204,8 @@ impl<'de> Deserialize<'de> for Nodes {
             Word(String),
         }
         match Written::deserialize(deserializer) {
-            Ok(Written::Count(n)) if (2..=4096).contains(&n) => Ok(Self::Count(n as usize)),
-            Ok(Written::Count(n)) => Err(serde::de::Error::custom(format!("nodes = {n}: an axis has 2 to 4096 nodes"))),
+            Ok(Written::Count(n)) if (2..=2048).contains(&n) => Ok(Self::Count(n as usize)),
+            Ok(Written::Count(n)) => Err(serde::de::Error::custom(format!("nodes = {n}: an axis has 2 to 2048 nodes"))),
             Ok(Written::Word(word)) if word == "auto" => Ok(Self::Auto),
             Ok(Written::Word(word)) => {
                 Err(serde::de::Error::custom(format!("nodes = \"{word}\": neither a count nor \"auto\"")))
@@ -351,6 +353,7 @@ impl Recipe {
                 return Err(Error::field(&self.path, key, format!("[{first}, {last}] does not rise")));
             }
         }
+        within("grid.max_force_error_p95", grid.max_force_error_p95.unwrap_or(1.0), 1e-6, 1.0)?;
         if grid.yaw_rad.range[0] != 0.0 {
             let message = format!("{} is not 0: backward yaw follows by symmetry", grid.yaw_rad.range[0]);
             return Err(Error::field(&self.path, "grid.yaw_rad.range", message));

@@ -95,12 +95,12 @@ fn touching_slope(point: &RidgePoint, yaw: f64, follows: f64) -> f64 {
 }
 
 /// Height of one wheel's tape-circle point (m, down) at which that wheel alone touches, for a displacement `u`, yaw
-/// and roll in its canonical frame: the zero of the table's vertical axis.
-pub fn touching_displacement(pair: &Pair, side: Side, u: f64, yaw: f64, roll: f64) -> Option<f64> {
+/// and roll in its canonical frame, and where it touches: the zero of the table's vertical axis.
+pub fn touching_displacement(pair: &Pair, side: Side, u: f64, yaw: f64, roll: f64) -> Option<(f64, RidgePoint)> {
     let geometry = pair.body(side).wheel().geometry();
     let pose = pose_with(geometry, &flangeway::Displacement { lateral: u, vertical: 0.0 }, yaw, roll);
-    let (vertical, _) = pair.column(side, &pose).touching(None)?;
-    Some(displacement(geometry, &Pose { vertical, ..pose }).vertical)
+    let (vertical, point) = pair.column(side, &pose).touching(None)?;
+    Some((displacement(geometry, &Pose { vertical, ..pose }).vertical, point))
 }
 
 /// Least width (m) of a gap in the contact's path on the wheel that counts as a jump between regions.

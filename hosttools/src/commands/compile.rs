@@ -61,6 +61,7 @@ pub fn run(args: &CompileArgs) -> Result<()> {
         pair.sides(),
         if pair.sides() == 1 { "" } else { "s" },
     );
+    eprintln!("  bounded by {}", compiled.bound);
     eprintln!(
         "  force error against the direct solver over {} poses: rms {:.2} %, median {:.3} %, p95 {:.2} %, p99 {:.2} %",
         errors.samples,
@@ -76,6 +77,7 @@ pub fn run(args: &CompileArgs) -> Result<()> {
             "sides": pair.sides(),
             "bytes": bytes,
             "seconds": seconds,
+            "bound": compiled.bound.to_string(),
             "force_error": {
                 "samples": errors.samples,
                 "rms": errors.force_rms,

@@ -5,6 +5,7 @@ pub mod compile;
 pub mod inspect;
 pub mod lookup;
 pub mod profile;
+pub mod quickstart;
 pub mod rigid;
 pub mod solve;
 pub mod verify;
@@ -43,6 +44,8 @@ enum Command {
     Lookup(lookup::LookupArgs),
     /// Say what a profile file was taken for, and draw it with its slope and curvature
     Profile(profile::ProfileArgs),
+    /// S1002 on 60E1: compile, verify, look up, and write a report, in well under a minute
+    Quickstart(quickstart::QuickstartArgs),
     /// Rigid contact: height and roll of the wheelset over lateral position and yaw
     Rigid(rigid::RigidArgs),
     /// Contacts of poses by the direct elastic solver
@@ -62,6 +65,7 @@ impl Cli {
             Command::Inspect(args) => inspect::run(args)?,
             Command::Lookup(args) => lookup::run(args)?,
             Command::Profile(args) => profile::run(args)?,
+            Command::Quickstart(args) => quickstart::run(args)?,
             Command::Rigid(args) => rigid::run(args)?,
             Command::Solve(args) => solve::run(args)?,
             Command::Verify(args) => return verify::run(args),

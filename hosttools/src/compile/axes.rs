@@ -1,16 +1,20 @@
-//! The axes of a table: evenly spaced so far, with a count an axis.
+//! The nodes of a table's axes.
 
 use crate::error::{Error, Result};
+use crate::image::OwnedAxis;
 use crate::recipe::{self, Nodes, Recipe};
 
-/// Default counts for `"auto"`. The lateral axis takes what the byte budget leaves.
-const YAW: usize = 13;
+/// Counts from which the refinement of `"auto"` axes starts.
+const LATERAL: usize = 33;
+const YAW: usize = 5;
 const VERTICAL: usize = 3;
 const ROLL: usize = 3;
-const LATERAL: std::ops::RangeInclusive<usize> = 9..=961;
 
-/// Room (bytes) for header, axes and padding.
-const OVERHEAD: usize = 8192;
+/// Intervals of the rigid maps in an interval of the records: lateral, yaw, roll offset.
+pub(super) const REFINEMENT: [usize; 3] = [4, 2, 2];
+
+/// Room (bytes) for header and padding.
+const OVERHEAD: usize = 2048;
 
 /// Node counts from the command line, lateral x yaw x vertical x roll as the paper writes them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,15 +27,13 @@ impl std::str::FromStr for Uniform {
     type Err = String;
 
     fn from_str(text: &str) -> std::result::Result<Self, String> {
-        let counts: Vec<usize> = text
-            .split('x')
-            .map(|n| n.parse().map_err(|_| format!("\"{n}\" is not a node count")))
-            .collect::<std::result::Result<_, _>>()?;
+        let count = |n: &str| n.parse().map_err(|_| format!("\"{n}\" is not a node count"));
+        let counts: Vec<usize> = text.split('x').map(count).collect::<std::result::Result<_, _>>()?;
         let counts: [usize; 4] = counts.try_into().map_err(|_| {
             format!("\"{text}\" is not four node counts, lateral x yaw x vertical x roll, such as 121x9x25x21")
         })?;
-        match counts.iter().find(|n| !(2..=4096).contains(*n)) {
-            Some(n) => Err(format!("{n} nodes: an axis has 2 to 4096 nodes")),
+        match counts.iter().find(|n| !(2..=2048).contains(*n)) {
+            Some(n) => Err(format!("{n} nodes: an axis has 2 to 2048 nodes")),
             None => Ok(Self { counts }),
         }
     }
@@ -48,45 +50,57 @@ pub struct Axes {
     pub roll: Vec<f32>,
     /// Height about the rigid one.
     pub vertical: Vec<f32>,
+    /// Of the rigid maps: lateral, yaw, roll offset.
+    rigid: [Vec<f32>; 3],
 }
 
 impl Axes {
-    /// Axes by the recipe, or by the counts given on the command line.
+    pub(super) fn new(lateral: Vec<f32>, yaw: Vec<f32>, roll: Vec<f32>, vertical: Vec<f32>) -> Self {
+        let [l, y, r] = REFINEMENT;
+        let rigid = [divided(&lateral, l), divided(&yaw, y), divided(&roll, r)];
+        Self { lateral, yaw, roll, vertical, rigid }
+    }
+
+    /// Evenly spaced axes by counts.
+    pub(super) fn uniform(recipe: &Recipe, Uniform { counts: [lateral, yaw, vertical, roll] }: Uniform) -> Self {
+        let grid = &recipe.grid;
+        Self::new(
+            evenly(grid.lateral_m.range, lateral),
+            evenly(grid.yaw_rad.range, yaw),
+            evenly(grid.roll_rad.range, roll),
+            evenly(grid.vertical_m.range, vertical),
+        )
+    }
+
+    /// The axes from which refinement starts: the recipe's counts, and few nodes where it says `"auto"`. The vertical
+    /// axis has a node where contact begins.
     ///
     /// # Errors
-    /// When the byte budget is too small for the counts.
-    pub fn choose(recipe: &Recipe, sides: usize, uniform: Option<Uniform>) -> Result<Self> {
+    /// When even these do not fit the byte budget.
+    pub(super) fn coarsest(recipe: &Recipe, sides: usize) -> Result<Self> {
         let grid = &recipe.grid;
         let count = |axis: &recipe::Axis, auto: usize| match axis.nodes {
             Nodes::Count(n) => n,
             Nodes::Auto => auto,
         };
-        let [lateral, yaw, vertical, roll] = match uniform {
-            Some(uniform) => uniform.counts,
-            None => {
-                let (yaw, roll) = (count(&grid.yaw_rad, YAW), count(&grid.roll_rad, ROLL));
-                let vertical = count(&grid.vertical_m, VERTICAL);
-                let room = usize::try_from(grid.max_bytes).unwrap_or(usize::MAX).saturating_sub(OVERHEAD);
-                let a_node = sides * yaw * (roll * vertical * flangeway::layout::RECORD + 4 * (1 + roll));
-                let fitting = (room / a_node).min(*LATERAL.end());
-                if grid.lateral_m.nodes == Nodes::Auto && fitting < *LATERAL.start() {
-                    let message = format!(
-                        "{} is too little: {} lateral nodes with {yaw} x {roll} x {vertical} others take {} bytes",
-                        grid.max_bytes,
-                        LATERAL.start(),
-                        LATERAL.start() * a_node + OVERHEAD
-                    );
-                    return Err(Error::field(&recipe.path, "grid.max_bytes", message));
-                }
-                [count(&grid.lateral_m, fitting), yaw, vertical, roll]
-            }
+        let [low, high] = grid.vertical_m.range;
+        let vertical = match grid.vertical_m.nodes {
+            Nodes::Auto if low < 0.0 && high > 0.0 => vec![low as f32, 0.0, high as f32],
+            _ => evenly(grid.vertical_m.range, count(&grid.vertical_m, VERTICAL)),
         };
-        Ok(Self {
-            lateral: evenly(grid.lateral_m.range, lateral),
-            yaw: evenly(grid.yaw_rad.range, yaw),
-            roll: evenly(grid.roll_rad.range, roll),
-            vertical: evenly(grid.vertical_m.range, vertical),
-        })
+        let axes = Self::new(
+            evenly(grid.lateral_m.range, count(&grid.lateral_m, LATERAL)),
+            evenly(grid.yaw_rad.range, count(&grid.yaw_rad, YAW)),
+            evenly(grid.roll_rad.range, count(&grid.roll_rad, ROLL)),
+            vertical,
+        );
+        let any_auto =
+            [grid.lateral_m, grid.yaw_rad, grid.roll_rad, grid.vertical_m].iter().any(|a| a.nodes == Nodes::Auto);
+        if any_auto && axes.bytes(sides) as u64 > grid.max_bytes {
+            let message = format!("{} is too little: the coarsest table takes {}", grid.max_bytes, axes.bytes(sides));
+            return Err(Error::field(&recipe.path, "grid.max_bytes", message));
+        }
+        Ok(axes)
     }
 
     /// Number of records a side.
@@ -94,20 +108,46 @@ impl Axes {
         self.lateral.len() * self.yaw.len() * self.roll.len() * self.vertical.len()
     }
 
-    /// Axes of the rigid maps: lateral, yaw, roll offset. They are the records' own, so that the zero of the vertical
-    /// axis is linear inside a cell and each slot's indentation with it. A finer map follows the rigid contact's
-    /// kink from tread to flange and bends every other slot's indentation inside the cell: at equal bytes the force
-    /// error of the Manchester pair was 2.6 % rms with the records' axis, 3.8 % with twice and 4.5 % with four times
-    /// as many nodes.
-    pub fn rigid(&self) -> [&[f32]; 3] {
-        [&self.lateral, &self.yaw, &self.roll]
+    /// Upper bound of the bytes of a table with these axes.
+    pub(super) fn bytes(&self, sides: usize) -> usize {
+        let [lateral, yaw, roll] = self.rigid.each_ref().map(Vec::len);
+        let maps = 4 * lateral * yaw * (roll + 1);
+        let axes: usize = self.all().iter().map(|nodes| 4 * nodes.len() + 2 * BINS_A_NODE * nodes.len()).sum();
+        OVERHEAD + axes + sides * (maps + flangeway::layout::RECORD * self.nodes())
+    }
+
+    /// Whether the kernel's constant-time search takes these axes: bins that part all nodes, and not too many.
+    pub(super) fn searchable(&self) -> bool {
+        flangeway::AxisName::ALL
+            .into_iter()
+            .zip(self.all())
+            .all(|(name, nodes)| OwnedAxis::new(name, nodes).is_ok_and(|axis| axis.bins() <= BINS_A_NODE * nodes.len()))
+    }
+
+    /// Axes of the rigid maps: lateral, yaw, roll offset, every interval of the records' axes divided by
+    /// [`REFINEMENT`].
+    pub(super) fn rigid(&self) -> [&[f32]; 3] {
+        let [lateral, yaw, roll] = &self.rigid;
+        [lateral, yaw, roll]
     }
 
     /// All axes in the order of the image.
-    pub fn all(&self) -> [&[f32]; 7] {
+    pub(super) fn all(&self) -> [&[f32]; 7] {
         let [lateral, yaw, roll] = self.rigid();
         [&self.lateral, &self.yaw, &self.roll, &self.vertical, lateral, yaw, roll]
     }
+}
+
+/// Most bins of the search map for each node that refinement may ask for.
+const BINS_A_NODE: usize = 8;
+
+/// Each interval divided into `parts`.
+fn divided(nodes: &[f32], parts: usize) -> Vec<f32> {
+    let inner = |w: &[f32]| {
+        let (a, b) = (f64::from(w[0]), f64::from(w[1]));
+        (0..parts).map(|k| (a + (b - a) * k as f64 / parts as f64) as f32).collect::<Vec<_>>()
+    };
+    nodes.windows(2).flat_map(inner).chain(nodes.last().copied()).collect()
 }
 
 fn evenly([first, last]: [f64; 2], count: usize) -> Vec<f32> {
@@ -127,7 +167,8 @@ mod tests {
     }
 
     #[test]
-    fn evenly_spaced_nodes_keep_the_ends() {
+    fn evenly_spaced_nodes_keep_the_ends_and_divide() {
         assert_eq!(evenly([-0.5, 1.0], 4), [-0.5, 0.0, 0.5, 1.0]);
+        assert_eq!(divided(&[0.0, 1.0, 3.0], 2), [0.0, 0.5, 1.0, 2.0, 3.0]);
     }
 }

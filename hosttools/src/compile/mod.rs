@@ -3,41 +3,31 @@
 //! Settle the axes, map the rigid contact, sample the direct solver at every node, quantise, write. Every step is a
 //! function of the recipe alone, so the image is the same for any number of threads.
 
+mod adaptive;
 mod axes;
 mod quantise;
 mod rigid_maps;
+mod sampler;
+mod trial;
 
-use flangeway::{Coordinates, ErrorFigures, Header, LANES, SLOTS, Side, SideHeader};
-use indicatif::{ParallelProgressIterator, ProgressBar};
+use flangeway::{ErrorFigures, Header, LANES, SLOTS, Scales, Side, SideHeader};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
+pub use adaptive::Bound;
 pub use axes::{Axes, Uniform};
 
 use crate::contact::{Curvature, Dimension, SlotState};
 use crate::error::{Error, Result};
-use crate::image::{ImageParts, OwnedRigidMaps, SideParts, write_image};
+use crate::image::{ImageParts, SideParts, write_image};
 use crate::pair::Pair;
-use crate::recipe::Recipe;
+use crate::recipe::{Nodes, Recipe};
 use crate::verify;
+use sampler::Sampler;
 
 /// Poses sampled for the error figures that the compiler writes into the header, and their seed.
 const FIGURE_SAMPLES: usize = 4000;
 const FIGURE_SEED: u64 = 1;
-
-/// One side, compiled.
-struct CompiledSide {
-    roll: Vec<f32>,
-    vertical: Vec<f32>,
-    records: Vec<[i16; LANES]>,
-    scales: flangeway::Scales,
-}
-
-impl CompiledSide {
-    fn parts(&self) -> SideParts<'_> {
-        SideParts { rigid_roll: &self.roll, rigid_vertical: &self.vertical, records: &self.records }
-    }
-}
 
 /// A finished table and what it took.
 #[derive(Debug, Clone)]
@@ -48,6 +38,8 @@ pub struct Compiled {
     pub axes: Axes,
     /// Its measured errors, as in its header.
     pub errors: ErrorFigures,
+    /// What ended the refinement of the axes.
+    pub bound: Bound,
 }
 
 /// Compiles the table of a pair. `uniform` overrides the recipe's node counts.
@@ -55,50 +47,109 @@ pub struct Compiled {
 /// # Errors
 /// When the axes do not fit the byte budget, or a wheel misses its rail inside the recipe's ranges.
 pub fn compile(recipe: &Recipe, pair: &Pair, uniform: Option<Uniform>) -> Result<Compiled> {
-    let axes = Axes::choose(recipe, pair.sides(), uniform)?;
-    let sides: Vec<CompiledSide> = Side::ALL
-        .into_iter()
-        .take(pair.sides())
-        .map(|side| compile_side(recipe, pair, side, &axes))
-        .collect::<Result<_>>()?;
-    let unmeasured = image(recipe, pair, &axes, &sides, ErrorFigures::default())?;
-    let errors = verify::figures(&unmeasured, pair, FIGURE_SAMPLES, FIGURE_SEED)?;
-    Ok(Compiled { image: image(recipe, pair, &axes, &sides, errors)?, axes, errors })
-}
-
-fn compile_side(recipe: &Recipe, pair: &Pair, side: Side, axes: &Axes) -> Result<CompiledSide> {
-    let (roll, vertical) = rigid_maps::solve(recipe, pair, side, axes)?;
-    let maps = OwnedRigidMaps::new(axes.rigid(), &roll, &vertical)?;
-    let samples = sample(pair, side, axes, &maps);
-    let scales = quantise::scales(&samples, pair.body(side).boundaries());
-    let records = samples.par_iter().map(|states| quantise::record(states, &scales)).collect();
-    Ok(CompiledSide { roll, vertical, records, scales })
-}
-
-/// The direct solver at every node, `[lateral][yaw][roll offset][vertical]`. The silhouette and its search serve a
-/// whole column of heights.
-fn sample(pair: &Pair, side: Side, axes: &Axes, maps: &OwnedRigidMaps) -> Vec<[SlotState; SLOTS]> {
-    let maps = maps.view();
-    let body = pair.body(side);
-    let columns = axes.lateral.len() * axes.yaw.len() * axes.roll.len();
-    let column = |k: usize| {
-        let (rest, l) = (k / axes.roll.len(), k % axes.roll.len());
-        let (i, j) = (rest / axes.yaw.len(), rest % axes.yaw.len());
-        let at = |vertical: f32| {
-            let [lateral, yaw, roll_offset, vertical] =
-                [axes.lateral[i], axes.yaw[j], axes.roll[l], vertical].map(f64::from);
-            maps.pose(body.wheel().geometry(), &Coordinates { lateral, yaw, roll_offset, vertical })
-        };
-        let pose = at(0.0);
-        let mut column = pair.column(side, &pose);
-        axes.vertical.iter().map(move |&vertical| column.slots(at(vertical).vertical)).collect::<Vec<_>>()
+    let mut compiler = Compiler::new(recipe, pair);
+    let grid = &recipe.grid;
+    let axes = [grid.lateral_m, grid.yaw_rad, grid.vertical_m, grid.roll_rad];
+    let (assembled, bound) = match uniform {
+        Some(uniform) => (compiler.assemble(Axes::uniform(recipe, uniform))?, Bound::Counts),
+        None if axes.iter().any(|axis| axis.nodes == Nodes::Auto) => adaptive::refine(recipe, &mut compiler)?,
+        None => (compiler.assemble(Axes::coarsest(recipe, pair.sides())?)?, Bound::Counts),
     };
-    let bar = bar(columns, "sampling");
-    (0..columns).into_par_iter().progress_with(bar).flat_map_iter(column).collect()
+    let errors = verify::figures(&assembled.image, pair, FIGURE_SAMPLES, FIGURE_SEED)?;
+    Ok(Compiled { image: compiler.image(&assembled, errors)?, axes: assembled.axes, errors, bound })
 }
 
-fn bar(length: usize, what: &'static str) -> ProgressBar {
-    crate::progress::bar(length as u64, what)
+/// One side, compiled.
+struct CompiledSide {
+    roll: Vec<f32>,
+    vertical: Vec<f32>,
+    records: Vec<[i16; LANES]>,
+    scales: Scales,
+}
+
+/// A table of some axes, its errors not yet measured.
+struct Assembled {
+    axes: Axes,
+    sides: Vec<CompiledSide>,
+    image: Vec<u8>,
+}
+
+impl CompiledSide {
+    fn new(sampler: &Sampler<'_>, pair: &Pair, axes: &Axes) -> Self {
+        let (roll, vertical) = rigid_maps::maps(sampler, axes);
+        let mut samples: Vec<[SlotState; SLOTS]> = Vec::with_capacity(axes.nodes());
+        for &u in &axes.lateral {
+            for &yaw in &axes.yaw {
+                for &roll in &axes.roll {
+                    samples.extend(axes.vertical.iter().map(|&z| sampler.states(u, yaw, roll, z)));
+                }
+            }
+        }
+        borrow_geometry(&mut samples, axes);
+        let scales = quantise::scales(&samples, pair.body(sampler.side).boundaries());
+        let records = samples.par_iter().map(|states| quantise::record(states, &scales)).collect();
+        Self { roll, vertical, records, scales }
+    }
+
+    fn parts(&self) -> SideParts<'_> {
+        SideParts { rigid_roll: &self.roll, rigid_vertical: &self.vertical, records: &self.records }
+    }
+}
+
+/// Gives slots without contact the geometry of the nearest node along the lateral axis where the slot has one.
+///
+/// Beside a node without contact the lookup still blends its geometry in. What the solver knows there, the edge of the
+/// slot's region or nothing at all, is no contact's geometry: at the edge wheel and rail may be nearly conformal, with
+/// an ellipse many times as long. Indentation and stiffness stay as they are.
+fn borrow_geometry(samples: &mut [[SlotState; SLOTS]], axes: &Axes) {
+    let plane = samples.len() / axes.lateral.len();
+    for slot in 0..SLOTS {
+        for k in 0..plane {
+            let touching: Vec<usize> =
+                (0..axes.lateral.len()).filter(|i| samples[i * plane + k][slot].stiffness > 0.0).collect();
+            for i in 0..axes.lateral.len() {
+                let after = touching.partition_point(|&j| j < i);
+                let distance = |&&j: &&usize| (axes.lateral[j] - axes.lateral[i]).abs();
+                let near = touching[after.saturating_sub(1)..touching.len().min(after + 1)].iter();
+                let Some(&j) = near.min_by(|a, b| distance(a).total_cmp(&distance(b))) else { break };
+                let SlotState { indentation, stiffness, .. } = samples[i * plane + k][slot];
+                if stiffness == 0.0 {
+                    samples[i * plane + k][slot] = SlotState { indentation, stiffness, ..samples[j * plane + k][slot] };
+                }
+            }
+        }
+    }
+}
+
+/// Makes tables of one pair, and remembers what it has solved for them.
+struct Compiler<'a> {
+    recipe: &'a Recipe,
+    pair: &'a Pair,
+    samplers: Vec<Sampler<'a>>,
+}
+
+impl<'a> Compiler<'a> {
+    fn new(recipe: &'a Recipe, pair: &'a Pair) -> Self {
+        let sides = Side::ALL.into_iter().take(pair.sides());
+        Self { recipe, pair, samplers: sides.map(|side| Sampler::new(recipe, pair, side)).collect() }
+    }
+
+    /// The table of these axes.
+    fn assemble(&mut self, axes: Axes) -> Result<Assembled> {
+        let mut sides = Vec::with_capacity(self.samplers.len());
+        for sampler in &mut self.samplers {
+            sampler.prepare(&axes)?;
+            sides.push(CompiledSide::new(sampler, self.pair, &axes));
+        }
+        let mut assembled = Assembled { axes, sides, image: Vec::new() };
+        assembled.image = self.image(&assembled, ErrorFigures::default())?;
+        Ok(assembled)
+    }
+
+    /// The image of a table, with its error figures.
+    fn image(&self, table: &Assembled, errors: ErrorFigures) -> Result<Vec<u8>> {
+        image(self.recipe, self.pair, &table.axes, &table.sides, errors)
+    }
 }
 
 fn image(recipe: &Recipe, pair: &Pair, axes: &Axes, sides: &[CompiledSide], errors: ErrorFigures) -> Result<Vec<u8>> {

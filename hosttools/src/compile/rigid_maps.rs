@@ -1,36 +1,71 @@
-//! The rigid maps of a side: roll of the wheelset at rest, and height at which the one wheel touches.
+//! The rigid maps of a side, as they are stored.
+//!
+//! They are finer than the records, so that the zero of the vertical axis follows the curvature of the rigid contact
+//! and what is left to the records is nearly linear. But where the contact jumps from one region of the wheel to
+//! another they must not: the kink belongs to one slot and would bend the indentation of all others inside the cell.
+//! There the map is linear between the records' nodes. Any reference does, as long as compiler and kernel agree.
 
-use flangeway::Side;
-use indicatif::ParallelProgressIterator;
-use rayon::prelude::*;
+use super::axes::{Axes, REFINEMENT};
+use super::sampler::{Sampler, Touch};
 
-use super::{Axes, bar};
-use crate::error::{Error, Result};
-use crate::pair::Pair;
-use crate::recipe::Recipe;
-use crate::rigid;
+/// Farthest (m) that the rigid contact moves on the wheel inside a cell without having jumped.
+const JUMP: f64 = 5e-3;
 
 /// `roll[lateral][yaw]` (rad) and `vertical[lateral][yaw][roll offset]` (m) on the rigid axes.
-pub(super) fn solve(recipe: &Recipe, pair: &Pair, side: Side, axes: &Axes) -> Result<(Vec<f32>, Vec<f32>)> {
-    let [lateral, yaw, roll_offset] = axes.rigid();
-    let plane = lateral.len() * yaw.len();
-    let node = |k: usize| (f64::from(lateral[k / yaw.len()]), f64::from(yaw[k % yaw.len()]));
-    let misses = |u: f64| {
-        let message = format!("a wheel misses its rail at a lateral position of {:.3} mm", 1e3 * u);
-        Error::field(&recipe.path, "grid.lateral_m.range", message)
-    };
-    let solve = |k: usize| {
-        let (u, yaw) = node(k);
-        // The map is stored in single precision; everything after it starts from the stored value.
-        let roll = rigid::at_displacement(pair, side, u, yaw).ok_or_else(|| misses(u))?.roll as f32;
-        let height = |offset: &f32| {
-            let roll = f64::from(roll) + f64::from(*offset);
-            rigid::touching_displacement(pair, side, u, yaw, roll).map(|w| w as f32).ok_or_else(|| misses(u))
-        };
-        Ok((roll, roll_offset.iter().map(height).collect::<Result<Vec<f32>>>()?))
-    };
-    let solved: Vec<(f32, Vec<f32>)> =
-        (0..plane).into_par_iter().progress_with(bar(plane, "rigid contact")).map(solve).collect::<Result<_>>()?;
-    let (roll, vertical): (Vec<f32>, Vec<Vec<f32>>) = solved.into_iter().unzip();
-    Ok((roll, vertical.concat()))
+pub(super) fn maps(sampler: &Sampler<'_>, axes: &Axes) -> (Vec<f32>, Vec<f32>) {
+    let [lateral, yaw, roll] = axes.rigid();
+    let mut rest = Vec::with_capacity(lateral.len() * yaw.len());
+    let mut touches = Vec::with_capacity(lateral.len() * yaw.len() * roll.len());
+    for &u in lateral {
+        for &psi in yaw {
+            rest.push(sampler.rest(u, psi));
+            touches.extend(roll.iter().map(|&offset| sampler.touch(u, psi, offset)));
+        }
+    }
+    let counts = [lateral.len(), yaw.len(), roll.len()];
+    let vertical = (0..touches.len()).map(|k| without_kink(&touches, counts, k)).collect();
+    (rest, vertical)
+}
+
+/// The height at a node of the rigid axes: as solved, or linear between the surrounding nodes of the records where
+/// the contact jumps between them.
+fn without_kink(touches: &[Touch], [_, yaws, rolls]: [usize; 3], k: usize) -> f32 {
+    let place = [k / (yaws * rolls), k / rolls % yaws, k % rolls];
+    let (mut height, mut jumped) = (0.0, false);
+    // The corners of the smallest element of the records' grid (node, edge, face or cell) that holds this node.
+    for corner in 0..8 {
+        let mut weight = 1.0;
+        let mut at = [0; 3];
+        for axis in 0..3 {
+            let inside = place[axis] % REFINEMENT[axis];
+            let share = inside as f64 / REFINEMENT[axis] as f64;
+            let upper = corner >> axis & 1 == 1;
+            weight *= if upper { share } else { 1.0 - share };
+            at[axis] = place[axis] - inside + if upper && inside > 0 { REFINEMENT[axis] } else { 0 };
+        }
+        if weight > 0.0 {
+            let corner = &touches[(at[0] * yaws + at[1]) * rolls + at[2]];
+            jumped |= (corner.profile - touches[k].profile).abs() > JUMP;
+            height += weight * f64::from(corner.vertical);
+        }
+    }
+    if jumped { height as f32 } else { touches[k].vertical }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn column(heights: [f32; 3], profiles: [f64; 3]) -> Vec<Touch> {
+        (0..3).map(|i| Touch { vertical: heights[i], profile: profiles[i] }).collect()
+    }
+
+    #[test]
+    fn a_smooth_cell_keeps_its_middle_and_a_kinked_one_does_not() {
+        let smooth = column([0.0, 3.0, 2.0], [0.0, 1e-3, 2e-3]);
+        assert_eq!(without_kink(&smooth, [3, 1, 1], 1), 3.0);
+        let kinked = column([0.0, 3.0, 2.0], [0.0, 1e-3, 9e-3]);
+        assert_eq!(without_kink(&kinked, [3, 1, 1], 1), 1.0);
+        assert_eq!(without_kink(&kinked, [3, 1, 1], 2), 2.0);
+    }
 }

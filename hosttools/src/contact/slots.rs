@@ -8,7 +8,7 @@
 //! between them (positive while they share a zone) and e = δ - σ their height above it, peak i keeps the share
 //!
 //! ```text
-//! w_i = min over j of [1 - max(σ, 0) / δ_i · e_j / (e_i + e_j)]
+//! w_i = min over j of [1 - (max(σ, 0) / δ_i)² · e_j / (e_i + e_j)]
 //! ```
 //! Separate zones (σ ≤ 0) keep everything, as in the paper; a peak that drowns in the flank of another (e_i → 0) fades
 //! to nothing; two equal peaks are treated alike; a shoulder of another peak takes nothing away that this one does not
@@ -233,7 +233,7 @@ pub(super) fn peaks(body: &Body, ridge: &Ridge<'_>, centre: f64, samples: &[Samp
             let saddle = lowest.min(di).min(dj).max(0.0);
             let (ei, ej) = (di - saddle, dj - saddle);
             let other = if ei + ej > 0.0 { ej / (ei + ej) } else { 0.5 };
-            peaks[i].share = peaks[i].share.min(1.0 - saddle / di * other);
+            peaks[i].share = peaks[i].share.min(1.0 - (saddle / di).powi(2) * other);
         }
     }
     peaks
