@@ -52,91 +52,120 @@ const DIRECTIONS: [Direction; 4] = [Direction::Lateral, Direction::Yaw, Directio
 /// Refines the axes that the recipe leaves to the compiler.
 pub(super) fn refine(recipe: &Recipe, compiler: &mut Compiler<'_>) -> Result<(Assembled, Bound)> {
     let grid = &recipe.grid;
-    let free: Vec<Direction> = DIRECTIONS
-        .into_iter()
-        .zip([&grid.lateral_m, &grid.yaw_rad, &grid.roll_rad, &grid.vertical_m])
-        .filter(|(_, axis)| axis.nodes == Nodes::Auto)
-        .map(|(direction, _)| direction)
-        .collect();
-    let budget = usize::try_from(grid.max_bytes).unwrap_or(usize::MAX);
-    let trials = trial::draw(recipe, compiler.pair);
-    let mut best = compiler.assemble(Axes::coarsest(recipe, compiler.pair.sides())?)?;
-    let mut errors = trial::errors(&best.image, &trials)?;
-    loop {
-        let (score, figures) = trial::score(&errors);
-        if grid.max_force_error_p95.is_some_and(|target| figures.p95 <= target) {
-            return Ok((best, Bound::Error));
-        }
-        let mut chosen: Option<(f64, Assembled, Vec<f64>)> = None;
-        let mut fits = false;
-        let weights: [fn(f64) -> f64; 2] = [|error| error, |error| error * error];
-        let steps = free.iter().flat_map(|&direction| weights.map(|weight| (direction, weight)));
-        for (direction, weight) in steps {
-            let blame: Vec<f64> = errors.iter().map(|&error| weight(error)).collect();
-            let Some(axes) = step(&best.axes, direction, &trials, &blame, budget, compiler.pair.sides()) else {
-                continue;
-            };
-            fits = true;
-            let candidate = compiler.assemble(axes)?;
-            let its_errors = trial::errors(&candidate.image, &trials)?;
-            let cost = libm::log(candidate.image.len() as f64 / best.image.len() as f64);
-            let gain = (score - trial::score(&its_errors).0) / cost;
-            if chosen.as_ref().is_none_or(|(most, ..)| gain > *most) {
-                chosen = Some((gain, candidate, its_errors));
-            }
-        }
-        match chosen {
-            Some((gain, candidate, its_errors)) if gain > LEAST_GAIN => (best, errors) = (candidate, its_errors),
-            _ => return Ok((best, if fits { Bound::Resolved } else { Bound::Bytes })),
-        }
-    }
+    let axes = [&grid.lateral_m, &grid.yaw_rad, &grid.roll_rad, &grid.vertical_m];
+    let free = DIRECTIONS.into_iter().zip(axes).filter(|(_, axis)| axis.nodes == Nodes::Auto).map(|(d, _)| d).collect();
+    let search = Search {
+        free,
+        budget: usize::try_from(grid.max_bytes).unwrap_or(usize::MAX),
+        sides: compiler.pair.sides(),
+        target: grid.max_force_error_p95,
+        trials: trial::draw(recipe, compiler.pair),
+    };
+    let coarsest = search.candidate(compiler, Axes::coarsest(recipe, search.sides)?)?;
+    let (best, bound) = search.grow(compiler, coarsest)?;
+    Ok((best.table, bound))
 }
 
-/// The axes after one refinement in a direction, where it fits the budget.
-fn step(
-    axes: &Axes,
-    direction: Direction,
-    trials: &[Trial],
-    weights: &[f64],
+/// A table and how it fared.
+struct Candidate {
+    table: Assembled,
+    errors: Vec<f64>,
+    score: f64,
+    p95: f64,
+}
+
+/// What the search is given.
+struct Search {
+    free: Vec<Direction>,
     budget: usize,
     sides: usize,
-) -> Option<Axes> {
-    let nodes = match direction {
-        Direction::Lateral => &axes.lateral,
-        Direction::Yaw => &axes.yaw,
-        Direction::Roll => &axes.roll,
-        Direction::Vertical => &axes.vertical,
-    };
-    // Intervals by the error that lies in them.
-    let mut blame = vec![0.0; nodes.len() - 1];
-    for (trial, weight) in trials.iter().zip(weights) {
-        let x = trial.coordinates[direction as usize];
-        let above = nodes.partition_point(|&node| f64::from(node) <= x);
-        blame[above.clamp(1, nodes.len() - 1) - 1] += weight;
+    target: Option<f64>,
+    trials: Vec<Trial>,
+}
+
+impl Search {
+    fn candidate(&self, compiler: &mut Compiler<'_>, axes: Axes) -> Result<Candidate> {
+        let table = compiler.assemble(axes)?;
+        let errors = trial::errors(&table.image, &self.trials)?;
+        let (score, figures) = trial::score(&errors);
+        Ok(Candidate { table, errors, score, p95: figures.p95 })
     }
-    let mut order: Vec<usize> = (0..blame.len()).collect();
-    order.sort_by(|&a, &b| blame[b].total_cmp(&blame[a]).then(a.cmp(&b)));
-    let mut count = match direction {
-        Direction::Lateral => ((nodes.len() as f64 * LATERAL_STEP).ceil() as usize).clamp(4, order.len()),
-        Direction::Roll => order.len(),
-        Direction::Yaw | Direction::Vertical => 1,
-    };
-    loop {
-        let refined = with_midpoints(nodes, &order[..count]);
-        let axes = match direction {
-            Direction::Lateral => Axes::new(refined, axes.yaw.clone(), axes.roll.clone(), axes.vertical.clone()),
-            Direction::Yaw => Axes::new(axes.lateral.clone(), refined, axes.roll.clone(), axes.vertical.clone()),
-            Direction::Roll => Axes::new(axes.lateral.clone(), axes.yaw.clone(), refined, axes.vertical.clone()),
-            Direction::Vertical => Axes::new(axes.lateral.clone(), axes.yaw.clone(), axes.roll.clone(), refined),
+
+    /// Takes the refinement with the largest gain for its bytes, until none fits or is worth it.
+    fn grow(&self, compiler: &mut Compiler<'_>, mut best: Candidate) -> Result<(Candidate, Bound)> {
+        // Where the error is: its sum finds what is wrong everywhere, its square what is wrong in places.
+        let weights: [fn(f64) -> f64; 2] = [|error| error, |error| error * error];
+        loop {
+            if self.target.is_some_and(|target| best.p95 <= target) {
+                return Ok((best, Bound::Error));
+            }
+            let mut chosen: Option<(f64, Candidate)> = None;
+            let mut fits = false;
+            for (&direction, weight) in self.free.iter().flat_map(|d| weights.map(|weight| (d, weight))) {
+                let Some(axes) = self.step(&best, direction, weight) else { continue };
+                fits = true;
+                let candidate = self.candidate(compiler, axes)?;
+                let cost = libm::log(candidate.table.image.len() as f64 / best.table.image.len() as f64);
+                let gain = (best.score - candidate.score) / cost;
+                if chosen.as_ref().is_none_or(|(most, _)| gain > *most) {
+                    chosen = Some((gain, candidate));
+                }
+            }
+            match chosen {
+                Some((gain, candidate)) if gain > LEAST_GAIN => best = candidate,
+                _ => return Ok((best, if fits { Bound::Resolved } else { Bound::Bytes })),
+            }
+        }
+    }
+
+    /// Sum of the weights of the trials in each interval of an axis.
+    fn blame(&self, nodes: &[f32], direction: Direction, weights: &[f64]) -> Vec<f64> {
+        let mut blame = vec![0.0; nodes.len() - 1];
+        for (trial, weight) in self.trials.iter().zip(weights) {
+            let x = trial.coordinates[direction as usize];
+            let above = nodes.partition_point(|&node| f64::from(node) <= x);
+            blame[above.clamp(1, nodes.len() - 1) - 1] += weight;
+        }
+        blame
+    }
+
+    /// The axes after one refinement in a direction, where it fits the budget.
+    fn step(&self, best: &Candidate, direction: Direction, weight: fn(f64) -> f64) -> Option<Axes> {
+        let axes = &best.table.axes;
+        let nodes = match direction {
+            Direction::Lateral => &axes.lateral,
+            Direction::Yaw => &axes.yaw,
+            Direction::Roll => &axes.roll,
+            Direction::Vertical => &axes.vertical,
         };
-        if axes.bytes(sides) <= budget && axes.searchable() {
-            return Some(axes);
+        let weights: Vec<f64> = best.errors.iter().map(|&error| weight(error)).collect();
+        let blame = self.blame(nodes, direction, &weights);
+        let mut order: Vec<usize> = (0..blame.len()).collect();
+        order.sort_by(|&a, &b| blame[b].total_cmp(&blame[a]).then(a.cmp(&b)));
+        let mut count = match direction {
+            Direction::Lateral => ((nodes.len() as f64 * LATERAL_STEP).ceil() as usize).clamp(4, order.len().max(4)),
+            _ => 1,
+        };
+        count = count.min(order.len());
+        loop {
+            let refined = with_midpoints(nodes, &order[..count]);
+            let (lateral, yaw, roll, vertical) =
+                (axes.lateral.clone(), axes.yaw.clone(), axes.roll.clone(), axes.vertical.clone());
+            let axes = match direction {
+                Direction::Lateral => Axes::new(refined, yaw, roll, vertical),
+                Direction::Yaw => Axes::new(lateral, refined, roll, vertical),
+                Direction::Roll => Axes::new(lateral, yaw, refined, vertical),
+                Direction::Vertical => Axes::new(lateral, yaw, roll, refined),
+            };
+            if axes.bytes(self.sides) <= self.budget && axes.searchable() {
+                return Some(axes);
+            }
+            // The last bytes go to as many lateral nodes as they hold.
+            if count == 1 {
+                return None;
+            }
+            count -= 1;
         }
-        // The last bytes go to as many lateral nodes as they hold.
-        if direction != Direction::Lateral || count == 1 {
-            return None;
-        }
-        count -= 1;
     }
 }
 

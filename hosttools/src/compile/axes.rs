@@ -4,9 +4,10 @@ use crate::error::{Error, Result};
 use crate::image::OwnedAxis;
 use crate::recipe::{self, Nodes, Recipe};
 
-/// Counts from which the refinement of `"auto"` axes starts.
-const LATERAL: usize = 33;
-const YAW: usize = 5;
+/// Counts from which the refinement of `"auto"` axes starts. Few, so that nodes come where they are wanted: starting
+/// from 33 lateral and 5 yaw nodes, 1 MiB ended at 1.6 % rms instead of 1.3 %.
+const LATERAL: usize = 9;
+const YAW: usize = 3;
 const VERTICAL: usize = 3;
 const ROLL: usize = 3;
 

@@ -10,7 +10,7 @@ mod rigid_maps;
 mod sampler;
 mod trial;
 
-use flangeway::{ErrorFigures, Header, LANES, SLOTS, Scales, Side, SideHeader};
+use flangeway::{ErrorFigures, Header, LANES, SLOTS, Scales, Side, SideHeader, Slot};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
@@ -103,7 +103,7 @@ impl CompiledSide {
 /// an ellipse many times as long. Indentation and stiffness stay as they are.
 fn borrow_geometry(samples: &mut [[SlotState; SLOTS]], axes: &Axes) {
     let plane = samples.len() / axes.lateral.len();
-    for slot in 0..SLOTS {
+    for slot in Slot::ALL.map(Slot::index) {
         for k in 0..plane {
             let touching: Vec<usize> =
                 (0..axes.lateral.len()).filter(|i| samples[i * plane + k][slot].stiffness > 0.0).collect();
