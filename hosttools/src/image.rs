@@ -252,6 +252,12 @@ pub fn quantise(scale: &Scale, value: f64) -> i16 {
 pub fn write_atomically(path: impl AsRef<Path>, bytes: &[u8]) -> Result<()> {
     let path = path.as_ref();
     let failed = |what: &str, e: &std::io::Error| Error::file(path, format!("{what}: {e}"));
+    // A device or a pipe (/dev/stdout) is written to; a rename would replace it.
+    if std::fs::metadata(path).is_ok_and(|existing| !existing.is_file() && !existing.is_dir()) {
+        let mut device =
+            std::fs::OpenOptions::new().write(true).open(path).map_err(|e| failed("cannot be opened", &e))?;
+        return device.write_all(bytes).map_err(|e| failed("cannot be written", &e));
+    }
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),

@@ -10,6 +10,7 @@ use crate::compile::{Uniform, compile};
 use crate::error::{Error, Result};
 use crate::image::write_atomically;
 use crate::pair::Pair;
+use crate::profile_noise;
 use crate::recipe::Recipe;
 
 /// Arguments of `flangeway compile`.
@@ -26,6 +27,9 @@ pub struct CompileArgs {
     /// Node counts, lateral x yaw x vertical x roll, instead of the recipe's
     #[arg(long, value_name = "121x9x25x21")]
     pub uniform: Option<Uniform>,
+    /// Bytes that "auto" axes may spend, instead of the recipe's `max_bytes`
+    #[arg(long, value_name = "BYTES")]
+    pub max_bytes: Option<u64>,
     /// Print nodes, bytes, seconds and error figures as JSON to stdout
     #[arg(long)]
     pub json: bool,
@@ -37,13 +41,19 @@ pub struct CompileArgs {
 /// On a bad recipe or profile, or when the table cannot be written.
 pub fn run(args: &CompileArgs) -> Result<()> {
     let start = Instant::now();
-    let recipe = Recipe::load(&args.recipe)?;
+    let mut recipe = Recipe::load(&args.recipe)?;
+    recipe.grid.max_bytes = args.max_bytes.unwrap_or(recipe.grid.max_bytes);
+    let recipe = recipe;
     let threads = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
     let threads = threads.map_err(|e| Error::field("", "--jobs", e.to_string()))?;
-    let (pair, compiled) = threads.install(|| {
+    let (pair, warnings, compiled) = threads.install(|| {
         let pair = Pair::build(&recipe)?;
+        let warnings = profile_noise::warnings(&recipe, &pair)?;
+        for warning in &warnings {
+            eprintln!("flangeway: warning: {warning}");
+        }
         let compiled = compile(&recipe, &pair, args.uniform)?;
-        Ok::<_, Error>((pair, compiled))
+        Ok::<_, Error>((pair, warnings, compiled))
     })?;
     write_atomically(&args.output, &compiled.image)?;
     let (seconds, bytes) = (start.elapsed().as_secs_f64(), compiled.image.len());
@@ -87,7 +97,8 @@ pub fn run(args: &CompileArgs) -> Result<()> {
                 "max": errors.force_max,
             },
             "continuity": errors.continuity,
-        }));
+            "warnings": warnings,
+        }))?;
     }
     Ok(())
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use flangeway::{AxisName, Channel, Side, Slot};
 use serde_json::{Value, json};
 
-use super::{print_json, read_table, view_table};
+use super::{print, print_json, read_table, view_table};
 use crate::error::Result;
 
 /// Arguments of `flangeway inspect`.
@@ -90,35 +90,32 @@ pub fn run(args: &InspectArgs) -> Result<()> {
             "continuity": e.continuity,
         },
     });
-    if args.json {
-        print_json(&document);
-    } else {
-        print(&document);
-    }
-    Ok(())
+    if args.json { print_json(&document) } else { print(&lines(&document)) }
 }
 
 /// The document as indented lines; scales are left to the JSON.
-fn print(document: &Value) {
-    let Value::Object(entries) = document else { return };
+fn lines(document: &Value) -> String {
+    let Value::Object(entries) = document else { return String::new() };
+    let mut lines = Vec::new();
     for (key, value) in entries {
         match value {
             Value::Object(inner) => {
-                println!("{key}:");
+                lines.push(format!("{key}:"));
                 for (key, value) in inner {
                     match value {
                         Value::Object(fields) => {
                             let shown = fields.iter().filter(|(name, _)| *name != "scales");
                             let shown: Vec<String> = shown.map(|(name, value)| format!("{name} {value}")).collect();
-                            println!("  {key}: {}", shown.join(", "));
+                            lines.push(format!("  {key}: {}", shown.join(", ")));
                         }
-                        _ => println!("  {key}: {value}"),
+                        _ => lines.push(format!("  {key}: {value}")),
                     }
                 }
             }
-            _ => println!("{key}: {value}"),
+            _ => lines.push(format!("{key}: {value}")),
         }
     }
+    lines.join("\n")
 }
 
 fn hex(bytes: &[u8]) -> String {

@@ -10,6 +10,7 @@ pub mod rigid;
 pub mod solve;
 pub mod verify;
 
+use std::io::Write as _;
 use std::path::Path;
 
 use clap::{Parser, Subcommand};
@@ -84,9 +85,14 @@ fn view_table<'a>(path: &Path, image: &'a [u8]) -> Result<ContactTable<'a>> {
     ContactTable::new(image).map_err(|e| Error::file(path, e.to_string()))
 }
 
+/// Writes text and a line's end to stdout; a reader that has gone or a full disk behind it is an error, not a panic.
+fn print(text: &str) -> Result<()> {
+    writeln!(std::io::stdout(), "{text}").map_err(|e| Error::file("stdout", e.to_string()))
+}
+
 /// Writes a JSON document to stdout.
-fn print_json(value: &serde_json::Value) {
-    println!("{value:#}");
+fn print_json(value: &serde_json::Value) -> Result<()> {
+    print(&format!("{value:#}"))
 }
 
 /// A wheel of the wheelset, as an option.

@@ -10,6 +10,7 @@ use crate::curve::Curve;
 use crate::error::Result;
 use crate::image::write_atomically;
 use crate::profile::{LengthUnit, Profile, ProfileKind, ReadOptions, is_built_in};
+use crate::profile_noise;
 
 /// Arguments of `flangeway profile`.
 #[derive(Debug, Clone, clap::Args)]
@@ -67,14 +68,25 @@ pub fn run(args: &ProfileArgs) -> Result<()> {
     if args.smoothing > 0.0 {
         eprintln!("  smoothed, the curve leaves the points by {:.4} mm rms", 1e3 * curve.residual());
     }
+    let band = profile_noise::contactable(&curve, profile.kind);
+    let warning = profile_noise::warning(&profile, &curve, args.smoothing, band);
+    if let Some(warning) = &warning {
+        eprintln!("flangeway: warning: {warning}");
+    }
     eprintln!("  drawn in {}", output.display());
     if args.json {
-        println!("{:#}", summary(&profile, &curve, args.smoothing, &output));
+        super::print_json(&summary(&profile, &curve, args.smoothing, warning.as_deref(), &output))?;
     }
     Ok(())
 }
 
-fn summary(profile: &Profile, curve: &Curve, smoothing: f64, output: &Path) -> serde_json::Value {
+fn summary(
+    profile: &Profile,
+    curve: &Curve,
+    smoothing: f64,
+    warning: Option<&str>,
+    output: &Path,
+) -> serde_json::Value {
     let joints: Vec<_> = profile
         .joints
         .iter()
@@ -94,6 +106,7 @@ fn summary(profile: &Profile, curve: &Curve, smoothing: f64, output: &Path) -> s
         "residual_m": curve.residual(),
         "source_sha256": hash,
         "recognised": profile.recognised,
+        "warning": warning,
         "drawing": output.display().to_string(),
     })
 }

@@ -64,7 +64,7 @@ pub fn run(args: &QuickstartArgs) -> Result<()> {
         start.elapsed().as_secs_f64()
     );
 
-    lookups::print(&pair, &table);
+    lookups::print(&pair, &table)?;
 
     let start = Instant::now();
     let table_name = TABLE;
@@ -86,7 +86,7 @@ pub fn run(args: &QuickstartArgs) -> Result<()> {
 }
 
 /// Makes the folder, where it is not there; its parent has to be.
-fn make(folder: &Path) -> Result<()> {
+pub(super) fn make(folder: &Path) -> Result<()> {
     match std::fs::create_dir(folder) {
         Err(_) if folder.is_dir() => Ok(()),
         made => made.map_err(|e| Error::file(folder, format!("the folder cannot be created: {e}"))),

@@ -4,12 +4,15 @@ use std::path::{Path, PathBuf};
 
 use flangeway::{ContactTable, Side};
 
+use super::quickstart::make;
 use super::{Outcome, print_json, read_table, view_table};
 use crate::error::{Error, Result};
 use crate::image::write_atomically;
+use crate::naive::{self, Beside, Factor, Naive};
 use crate::pair::Pair;
 use crate::recipe::Recipe;
-use crate::verify::{Report, Sample, report};
+use crate::report::verify::{Content, html};
+use crate::verify::{Findings, Report, Sample, findings, measure};
 
 /// Arguments of `flangeway verify`.
 #[derive(Debug, Clone, clap::Args)]
@@ -35,9 +38,30 @@ pub struct VerifyArgs {
     /// Write every sample with both forces as CSV
     #[arg(short, long, value_name = "SAMPLES.csv")]
     pub output: Option<PathBuf>,
+    /// Write verify.html (pictures, worst poses, largest changes) and verify.json to a folder
+    #[arg(long, value_name = "DIR")]
+    pub report: Option<PathBuf>,
+    /// Compare with naive tables (the paper's coordinates and storage) of the same bytes on the same poses
+    #[arg(long)]
+    pub naive: bool,
     /// Print the figures as JSON to stdout
     #[arg(long)]
     pub json: bool,
+}
+
+/// What `--json` and `--report` write.
+#[derive(serde::Serialize)]
+struct Document<'a> {
+    #[serde(flatten)]
+    report: Report,
+    #[serde(flatten)]
+    findings: Option<&'a Findings>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    naive: Option<Naive>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    factor: Option<Factor>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    naive_on_fewer_poses: &'a [Beside],
 }
 
 /// Measures the table and prints the figures.
@@ -50,13 +74,43 @@ pub fn run(args: &VerifyArgs) -> Result<Outcome> {
     let recipe = Recipe::load(&args.recipe)?;
     let pair = Pair::build(&recipe)?;
     same_profiles(&args.table, &table, &pair)?;
-    let (report, samples) = report(&table, image.len(), &pair, args.samples as usize, args.lines as usize, args.seed);
-    if args.json {
-        print_json(&serde_json::to_value(report).map_err(|e| Error::file(&args.table, e.to_string()))?);
+    if let Some(folder) = &args.report {
+        make(folder)?;
     }
+    let measured = measure(&table, image.len(), &pair, args.samples as usize, args.lines as usize, args.seed);
+    let report = measured.report;
     print(&report);
+    let findings = args.report.as_ref().map(|_| findings(&table, &pair, &measured));
+    let naive = if args.naive { naive::compare(&pair, &measured.samples, image.len()) } else { Vec::new() };
+    let document = Document {
+        report,
+        findings: findings.as_ref(),
+        naive: naive.first().map(|all| all.naive),
+        factor: naive.first().map(|all| all.factor),
+        naive_on_fewer_poses: naive.get(1..).unwrap_or_default(),
+    };
+    let json = serde_json::to_value(&document).map_err(|e| Error::file(&args.table, e.to_string()))?;
+    if let (Some(folder), Some(findings)) = (&args.report, &findings) {
+        let table_name = args.table.file_name().unwrap_or_default().to_string_lossy();
+        let content = Content {
+            pair: &pair,
+            table: &table,
+            table_name: &table_name,
+            measured: &measured,
+            findings,
+            naive: &naive,
+        };
+        write_atomically(folder.join("verify.html"), html(&content)?.as_bytes())?;
+        write_atomically(folder.join("verify.json"), format!("{json:#}\n").as_bytes())?;
+        print_findings(findings);
+        eprintln!("{}: pictures, worst poses, largest changes", folder.join("verify.html").display());
+    }
+    naive.iter().for_each(print_naive);
+    if args.json {
+        print_json(&json)?;
+    }
     if let Some(output) = &args.output {
-        write_samples(output, &samples)?;
+        write_samples(output, &measured.samples)?;
     }
     match args.limit_p95 {
         Some(limit) if report.normal_force.p95 > limit => {
@@ -149,5 +203,29 @@ fn print(report: &Report) {
         "largest change of force over 10 nm or 10 nrad: table {:.4} %, direct solver {:.4} %",
         1e2 * report.continuity,
         1e2 * report.continuity_direct
+    );
+}
+
+fn print_findings(findings: &Findings) {
+    eprintln!("force error (%) by what the cell of the table holds:");
+    eprintln!("{:>34} {:>8} {:>10} {:>10} {:>10} {:>10}", "", "poses", "rms", "median", "p95", "p99");
+    for row in &findings.classes {
+        let q = &row.normal_force;
+        let values = [q.rms, q.median, q.p95, q.p99].map(|v| format!("{:>10.4}", 1e2 * v));
+        eprintln!("{:>34} {:>8} {}", row.class.words(), row.samples, values.join(" "));
+    }
+}
+
+fn print_naive(Beside { poses, naive, factor, .. }: &Beside) {
+    let (q, [y, yaw, z, roll]) = (&naive.normal_force, naive.design.nodes);
+    let figures = [q.rms, q.median, q.p95, q.p99].map(|v| format!("{:.3}", 1e2 * v));
+    let factors = [factor.rms, factor.median, factor.p95, factor.p99].map(|v| format!("{v:.1}"));
+    eprintln!(
+        "naive table, {} bytes, {y} x {yaw} x {z} x {roll} (y, yaw, z, roll), the best of {}; {poses}: \n    rms, median, \
+         p95, p99 {} %; worse than this table by a factor of {}",
+        naive.bytes,
+        naive.trials,
+        figures.join(", "),
+        factors.join(", ")
     );
 }

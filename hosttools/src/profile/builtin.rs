@@ -13,8 +13,8 @@ pub const BUILT_INS: [&str; 8] =
 const WHEEL_ENDS: [f64; 2] = [-0.070, 0.060];
 /// Half the width (m) of the flat and circular rails.
 const RAIL_HALF_WIDTH: f64 = 0.050;
-/// A circular profile ends where it is this steep (sine of 60°).
-const STEEPEST: f64 = 0.866_025_403_784_438_6;
+/// A circular profile ends where it is this steep (sine of 80°): a flange of 70° finds its point on it.
+const STEEPEST: f64 = 0.984_807_753_012_208;
 
 /// Whether a profile's specification names a built-in one.
 pub fn is_built_in(spec: &str) -> bool {

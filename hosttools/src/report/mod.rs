@@ -1,6 +1,7 @@
 //! The report of a table: what it was made of, how good it is, and what the contact looks like. One page, one file.
 
 mod errors;
+mod heat;
 mod page;
 mod positions;
 mod profiles;
@@ -8,6 +9,7 @@ mod rolling;
 mod style;
 mod sweep;
 mod transfer;
+pub mod verify;
 
 use flangeway::ContactTable;
 

@@ -6,7 +6,8 @@ use flangeway::{AxisName, Side, Slot};
 
 use super::style::colour;
 use super::{Content, Figure};
-use crate::verify::Quantiles;
+use crate::pair::Pair;
+use crate::verify::{Quantiles, Report};
 
 const STYLE: &str = "\
 body{margin:0 auto;padding:24px;max-width:1200px;font:16px/1.5 system-ui,sans-serif;color:#222;background:#fff}\
@@ -22,30 +23,44 @@ figure{margin:0}svg{display:block;width:100%;height:auto}figcaption{max-width:90
 pub(super) fn page(content: &Content<'_>, figures: &[Figure]) -> String {
     let header = content.table.header().side(Side::Right);
     let title = format!("{} on {}", escaped(&header.wheel.to_uppercase()), escaped(&header.rail.to_uppercase()));
-    let mut html = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width\">\n<title>{title}: Flangeway report</title>\n\
-         <style>{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n\
-         <p>A contact table by Flangeway, measured against the direct solver it was sampled from. Track frame: x \
-         forward, y to the right, z down.</p>\n"
+    let mut html = head(
+        &title,
+        "A contact table by Flangeway, measured against the direct solver it was sampled from. Track frame: x forward, \
+         y to the right, z down.",
     );
     html += "<div class=\"tables\">\n";
     html += &made_of(content);
-    html += &slots(content);
-    html += &errors(content);
+    html += &slots(content.pair);
+    html += &errors(content.report);
     html += "</div>\n";
     for (index, figure) in figures.iter().enumerate() {
-        let Figure { title, svg, caption } = figure;
-        let number = index + 1;
-        let _ = write!(
-            html,
-            "<h2>{number}. {title}</h2>\n<figure>\n{}\n<figcaption>{}</figcaption>\n</figure>\n",
-            svg.trim_end(),
-            escaped(caption)
-        );
+        html += &numbered(index + 1, figure);
     }
-    html += "</body>\n</html>\n";
+    html += END;
     html
+}
+
+/// The end of every page.
+pub(super) const END: &str = "</body>\n</html>\n";
+
+/// The beginning of a page: title (escaped already) and a sentence below it.
+pub(super) fn head(title: &str, words: &str) -> String {
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width\">\n<title>{title}: Flangeway report</title>\n\
+         <style>{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n<p>{}</p>\n",
+        escaped(words)
+    )
+}
+
+/// A figure under its number and title.
+pub(super) fn numbered(number: usize, figure: &Figure) -> String {
+    let Figure { title, svg, caption } = figure;
+    format!(
+        "<h2>{number}. {title}</h2>\n<figure>\n{}\n<figcaption>{}</figcaption>\n</figure>\n",
+        svg.trim_end(),
+        escaped(caption)
+    )
 }
 
 fn row(html: &mut String, name: &str, value: &str) {
@@ -85,8 +100,8 @@ fn made_of(content: &Content<'_>) -> String {
     html
 }
 
-fn errors(content: &Content<'_>) -> String {
-    let report = content.report;
+/// The error figures.
+pub(super) fn errors(report: &Report) -> String {
     let mut html = format!(
         "<table>\n<caption>Errors over {} random poses (seed {})</caption>\n<thead><tr><th></th>",
         report.samples, report.seed
@@ -123,11 +138,12 @@ fn errors(content: &Content<'_>) -> String {
     html
 }
 
-fn slots(content: &Content<'_>) -> String {
+/// The slots and their ranges.
+pub(super) fn slots(pair: &Pair) -> String {
     let mut html = String::from("<table>\n<caption>Slots, by the wheel-profile coordinate s</caption>\n<tbody>\n");
-    for side in Side::ALL.into_iter().take(content.pair.sides()) {
-        let [upper, lower] = content.pair.body(side).boundaries().map(|s| 1e3 * s);
-        let which = if content.pair.sides() == 1 { String::new() } else { format!(" ({side} wheel)") };
+    for side in Side::ALL.into_iter().take(pair.sides()) {
+        let [upper, lower] = pair.body(side).boundaries().map(|s| 1e3 * s);
+        let which = if pair.sides() == 1 { String::new() } else { format!(" ({side} wheel)") };
         for slot in Slot::ALL {
             let range = match slot {
                 Slot::Tread => format!("s above {upper:.1} mm"),
@@ -146,6 +162,7 @@ fn slots(content: &Content<'_>) -> String {
     html
 }
 
-fn escaped(text: &str) -> String {
+/// Text with the characters that mean something in HTML written out.
+pub(super) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

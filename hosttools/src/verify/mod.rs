@@ -8,7 +8,12 @@
 //! ```
 //! on the wheel's total.
 
+mod classify;
 mod continuity;
+mod explain;
+mod findings;
+mod forces;
+mod joints;
 mod load;
 mod statistics;
 
@@ -18,7 +23,11 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
-pub use continuity::{Change, Continuity, continuity};
+pub use classify::{Class, Surroundings, surroundings};
+pub use continuity::{Change, Continuity, Direction, continuity};
+pub use explain::{Cause, Explanation, explain_direct, explain_table};
+pub use findings::{Changes, ClassFigures, Findings, LargeChange, NearJoint, WorstPose, findings};
+pub use joints::{Joint, joints};
 pub use load::height_for_load;
 pub use statistics::{Quantiles, quantile};
 
@@ -38,6 +47,8 @@ const FIGURE_LINES: usize = 200;
 /// One sampled pose, by the direct solver and by the table.
 #[derive(Debug, Clone, Copy)]
 pub struct Sample {
+    /// The wheel.
+    pub side: Side,
     /// The canonical pose.
     pub pose: Pose,
     /// Its table coordinates.
@@ -140,11 +151,11 @@ fn compare(
 ) -> Sample {
     // The canonical pose is a pose of the right wheel; the left wheel's is its mirror.
     let sign = side.sign();
-    let actual = Pose { lateral: sign * pose.lateral, yaw: sign * pose.yaw, roll: sign * pose.roll, ..pose };
-    let found = table.contacts(side, &actual);
+    let found = forces::looked_up(table, side, &pose);
     let direct: f64 = slots.iter().map(SlotState::normal_force).sum();
     let total = f64::from(found.total_normal_force());
     let mut sample = Sample {
+        side,
         pose,
         coordinates,
         direct,
@@ -175,21 +186,25 @@ fn compare(
     sample
 }
 
-/// The whole comparison of a table, on every side that has data of its own.
-pub fn report(
-    table: &ContactTable<'_>,
-    bytes: usize,
-    pair: &Pair,
-    count: usize,
-    lines: usize,
-    seed: u64,
-) -> (Report, Vec<Sample>) {
+/// Everything measured of a table.
+#[derive(Debug, Clone)]
+pub struct Measured {
+    /// The figures.
+    pub report: Report,
+    /// The samples behind the errors.
+    pub samples: Vec<Sample>,
+    /// The largest changes behind the continuity figures.
+    pub continuity: Continuity,
+}
+
+/// The whole comparison of a table, on every side that has data of its own: `count` poses and `lines` lines.
+pub fn measure(table: &ContactTable<'_>, bytes: usize, pair: &Pair, count: usize, lines: usize, seed: u64) -> Measured {
     let mut samples = Vec::new();
-    let mut worst = Continuity::default();
+    let mut changes = Continuity::default();
     let sides = table.header().sides();
     for side in Side::ALL.into_iter().take(sides) {
         samples.extend(sample(table, pair, side, count / sides, seed));
-        worst = worst.max(continuity(table, pair, side, lines / sides, seed));
+        changes.join(continuity(table, pair, side, lines / sides, seed));
     }
     let of = |value: fn(&Sample) -> f64| Quantiles::of(samples.iter().map(value).collect());
     let report = Report {
@@ -201,9 +216,22 @@ pub fn report(
         angle_rad: of(|s| s.angle),
         semi_axes: of(|s| s.semi_axes),
         other_count: samples.iter().filter(|s| s.other_count).count() as f64 / samples.len().max(1) as f64,
-        continuity: worst.table.relative,
-        continuity_direct: worst.direct.relative,
+        continuity: changes.worst_of_table(),
+        continuity_direct: changes.worst_of_direct(),
     };
+    Measured { report, samples, continuity: changes }
+}
+
+/// As [`measure`], without the changes behind the continuity figures.
+pub fn report(
+    table: &ContactTable<'_>,
+    bytes: usize,
+    pair: &Pair,
+    count: usize,
+    lines: usize,
+    seed: u64,
+) -> (Report, Vec<Sample>) {
+    let Measured { report, samples, .. } = measure(table, bytes, pair, count, lines, seed);
     (report, samples)
 }
 

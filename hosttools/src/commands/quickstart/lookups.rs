@@ -2,7 +2,9 @@
 
 use flangeway::{ContactTable, Pose, Side, Slot};
 
+use crate::commands::print as say;
 use crate::contacts::{self, ContactRow};
+use crate::error::Result;
 use crate::pair::Pair;
 use crate::rigid::two_wheels;
 use crate::verify::height_for_load;
@@ -16,16 +18,16 @@ const PLACES: [[f64; 2]; 5] = [[0.0, 0.0], [3e-3, 2e-3], [4.8e-3, 5e-3], [6e-3, 
 const ROLL: f64 = 1e-3;
 
 /// Prints the contacts of the places, by the table and by the direct solver.
-pub(super) fn print(pair: &Pair, table: &ContactTable<'_>) {
-    println!("Wheelset at rest, {:.0} kN of normal force on each wheel:", 1e-3 * LOAD);
-    println!(
+pub(super) fn print(pair: &Pair, table: &ContactTable<'_>) -> Result<()> {
+    let mut lines = vec![format!("Wheelset at rest, {:.0} kN of normal force on each wheel:", 1e-3 * LOAD)];
+    lines.push(format!(
         "{:>7} {:>6}  {:<5}  {:<11} {:>7} {:>8} {:>7} {:>9} {:>9} {:>7} {:>6} {:>6}",
         "lateral", "yaw", "side", "slot", "at x", "at y", "angle", "N table", "N direct", "differ", "a", "b"
-    );
-    println!(
+    ));
+    lines.push(format!(
         "{:>7} {:>6}  {:<5}  {:<11} {:>7} {:>8} {:>7} {:>9} {:>9} {:>7} {:>6} {:>6}",
         "mm", "mrad", "", "", "mm", "mm", "mrad", "kN", "kN", "%", "mm", "mm"
-    );
+    ));
     for [lateral, yaw] in PLACES {
         let Some(pose) = at_rest(pair, lateral, yaw) else { continue };
         for side in Side::ALL {
@@ -34,11 +36,12 @@ pub(super) fn print(pair: &Pair, table: &ContactTable<'_>) {
             for slot in Slot::ALL {
                 let of = |rows: &[ContactRow]| rows.iter().find(|row| row.slot == slot).cloned();
                 if let Some(line) = line(&pose, of(&found), of(&solved)) {
-                    println!("{line}");
+                    lines.push(line);
                 }
             }
         }
     }
+    say(&lines.join("\n"))
 }
 
 /// One contact; `None` where neither knows it.
