@@ -65,7 +65,7 @@ impl Direction {
     }
 }
 
-/// A relative change of total force over [`STEP`].
+/// A relative change of total force over 10 nm or 10 nrad.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Change {
     /// |ΔN| / N.
