@@ -22,7 +22,7 @@ figure{margin:0}svg{display:block;width:100%;height:auto}figcaption{max-width:90
 /// The whole page.
 pub(super) fn page(content: &Content<'_>, figures: &[Figure]) -> String {
     let header = content.table.header().side(Side::Right);
-    let title = format!("{} on {}", escaped(&header.wheel.to_uppercase()), escaped(&header.rail.to_uppercase()));
+    let title = title(header);
     let mut html = head(
         &title,
         "A contact table by Flangeway, measured against the direct solver it was sampled from. Track frame: x forward, \
@@ -160,6 +160,12 @@ pub(super) fn slots(pair: &Pair) -> String {
     }
     html += "</tbody>\n</table>\n";
     html
+}
+
+/// Wheel on rail, as a heading: built-in names in capitals, file names as they are.
+pub(super) fn title(header: &flangeway::SideHeader<'_>) -> String {
+    let name = |name: &str| escaped(&if name.contains('.') { name.to_owned() } else { name.to_uppercase() });
+    format!("{} on {}", name(header.wheel), name(header.rail))
 }
 
 /// Text with the characters that mean something in HTML written out.

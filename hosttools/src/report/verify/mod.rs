@@ -7,7 +7,7 @@ mod tables;
 
 use flangeway::{ContactTable, Side};
 
-use super::page::{END, errors, escaped, head, numbered, slots};
+use super::page::{self, END, errors, head, numbered, slots};
 use super::{Figure, errors as scatter};
 use crate::error::Result;
 use crate::naive::Beside;
@@ -39,7 +39,7 @@ pub struct Content<'a> {
 pub fn html(content: &Content<'_>) -> Result<String> {
     let Content { pair, measured, findings, .. } = *content;
     let header = content.table.header().side(Side::Right);
-    let title = format!("{} on {}", escaped(&header.wheel.to_uppercase()), escaped(&header.rail.to_uppercase()));
+    let title = page::title(header);
     let words = format!(
         "Verification of {}, {} bytes, against the direct solver it was sampled from. Lateral displacement u, yaw and \
          roll are uniform over the table, the load is log-uniform from 5 to 150 kN; the error of the wheel's total \
