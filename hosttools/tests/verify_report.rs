@@ -1,54 +1,31 @@
 //! The report of `verify`: complete in itself, every number a number, every sample in exactly one class.
 
-use std::process::Command;
+mod common;
 
+use common::{Folder, RECIPE};
 use serde_json::Value;
 
 const SAMPLES: u64 = 600;
-const RECIPE: &str = r#"
-[wheel]
-profile = "s1002"
-nominal_radius_m = 0.46
-flange_back_spacing_m = 1.36
-flange_back_position_m = -0.07
-
-[rail]
-profile = "60e1"
-gauge_m = 1.435
-cant_rad = 0.025
-
-[material]
-youngs_modulus_pa = 2.1e11
-poisson_ratio = 0.28
-
-[grid]
+const GRID: &str = "[grid]
 lateral_m = { range = [-0.003, 0.008], nodes = 33 }
 yaw_rad = { range = [0.0, 0.012], nodes = 3 }
 vertical_m = { range = [-5e-5, 1.5e-4], nodes = 3 }
 roll_rad = { range = [-1e-3, 1e-3], nodes = 3 }
-"#;
+";
 
 fn number(value: &Value, path: &str) -> f64 {
     value.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("{path} is no number"))
 }
 
-fn run(folder: &std::path::Path, arguments: &str) -> String {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_flangeway"));
-    let output = command.current_dir(folder).args(arguments.split_whitespace()).output().unwrap();
-    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(0), "{arguments}: {stderr}");
-    String::from_utf8(output.stdout).unwrap()
-}
-
 #[test]
 fn report_of_a_small_table() {
-    let place = tempfile::tempdir().unwrap();
-    let folder = place.path();
-    std::fs::write(folder.join("recipe.toml"), RECIPE).unwrap();
-    run(folder, "compile recipe.toml -o table.fwt");
+    let folder = Folder::new();
+    let (pair, _) = RECIPE.split_once("[grid]").unwrap();
+    folder.write("recipe.toml", format!("{pair}{GRID}"));
+    folder.run_well("compile recipe.toml -o table.fwt");
     let verify = format!("verify table.fwt --recipe recipe.toml --samples {SAMPLES} --lines 24 --seed 5 --json");
-    let printed: Value = serde_json::from_str(&run(folder, &format!("{verify} --report out --naive"))).unwrap();
-    let text = std::fs::read_to_string(folder.join("out/verify.json")).unwrap();
+    let printed: Value = serde_json::from_str(&folder.run_well(&format!("{verify} --report out --naive"))).unwrap();
+    let text = folder.read("out/verify.json");
     let report: Value = serde_json::from_str(&text).unwrap();
     assert_eq!(report, printed);
     // serde_json writes what is not finite as null.
@@ -58,10 +35,10 @@ fn report_of_a_small_table() {
     worst(&report);
     changes(&report);
     naive(&report);
-    page(&std::fs::read_to_string(folder.join("out/verify.html")).unwrap());
+    page(&folder.read("out/verify.html"));
 
     // Without the option nothing of it is there, and the figures are the same.
-    let plain: Value = serde_json::from_str(&run(folder, &verify)).unwrap();
+    let plain: Value = serde_json::from_str(&folder.run_well(&verify)).unwrap();
     assert_eq!(plain["normal_force"], report["normal_force"]);
     assert!(plain.get("naive").is_none() && plain.get("worst").is_none());
 }

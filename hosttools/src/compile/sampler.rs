@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 
-use flangeway::{Pose, SLOTS, Side, displacement};
+use flangeway::{SLOTS, Side};
 use rayon::prelude::*;
 
 use super::axes::Axes;
@@ -126,7 +126,7 @@ impl<'a> Sampler<'a> {
                 f64::from(yaw),
                 roll,
             );
-            debug_assert!((displacement(geometry, &Pose { ..pose }).vertical - touching).abs() < 1e-12);
+            debug_assert!((flangeway::displacement(geometry, &pose).vertical - touching).abs() < 1e-12);
             let mut column = self.pair.column(self.side, &pose);
             let states = |&z: &f32| (z.to_bits(), column.slots(pose.vertical + f64::from(z)));
             (key(*at), heights.iter().map(states).collect::<Vec<_>>())
