@@ -99,9 +99,9 @@ fn a_node_answers_what_is_stored_and_what_was_solved() {
                 if !touches && !matches!(channel, Channel::Indentation | Channel::Stiffness) {
                     continue;
                 }
-                // A gap is stored as a millimetre at the most.
+                // A gap is stored as 0.3 mm at the most.
                 let value = values(state)[channel.index()];
-                let value = if channel == Channel::Indentation { value.max(-1e-3) } else { value };
+                let value = if channel == Channel::Indentation { value.max(-0.3e-3) } else { value };
                 let apart = (f64::from(stored) - value).abs();
                 // The dequantised value is single precision.
                 let single = 1.2e-7 * (f64::from(scale.offset).abs() + value.abs());

@@ -245,6 +245,22 @@ pub fn quantise(scale: &Scale, value: f64) -> i16 {
     q.clamp(f64::from(i16::MIN), f64::from(i16::MAX)) as i16
 }
 
+/// The folder that a file is to be written to.
+///
+/// # Errors
+/// When it does not exist.
+pub fn folder_of(path: &Path) -> Result<&Path> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    if folder.is_dir() {
+        Ok(folder)
+    } else {
+        Err(Error::file(path, format!("folder {} does not exist", folder.display())))
+    }
+}
+
 /// Writes a file whole or not at all: to a temporary file in the same folder, then renamed.
 ///
 /// # Errors
@@ -258,13 +274,7 @@ pub fn write_atomically(path: impl AsRef<Path>, bytes: &[u8]) -> Result<()> {
             std::fs::OpenOptions::new().write(true).open(path).map_err(|e| failed("cannot be opened", &e))?;
         return device.write_all(bytes).map_err(|e| failed("cannot be written", &e));
     }
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    if !folder.is_dir() {
-        return Err(Error::file(path, format!("folder {} does not exist", folder.display())));
-    }
+    let folder = folder_of(path)?;
     let mut builder = tempfile::Builder::new();
     builder.prefix(".flangeway-").suffix(".tmp");
     // Temporary files are private by default; this one becomes an ordinary file, subject to the umask.

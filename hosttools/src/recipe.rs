@@ -172,6 +172,20 @@ pub struct Grid {
     pub max_bytes: u64,
     /// 95 % quantile of the relative force error at which `"auto"` has done enough.
     pub max_force_error_p95: Option<f64>,
+    /// `"fitted"` to the solver between the nodes, or `"sampled"` at the nodes.
+    #[serde(default)]
+    pub node_values: NodeValues,
+}
+
+/// What a node holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum NodeValues {
+    /// What brings the table nearest to the solver between the nodes.
+    #[default]
+    Fitted,
+    /// The solver's answer at the node.
+    Sampled,
 }
 
 /// One axis of the table.

@@ -140,7 +140,7 @@ impl Axes {
 }
 
 /// Most bins of the search map for each node that refinement may ask for.
-const BINS_A_NODE: usize = 8;
+pub(super) const BINS_A_NODE: usize = 16;
 
 /// Each interval divided into `parts`.
 fn divided(nodes: &[f32], parts: usize) -> Vec<f32> {

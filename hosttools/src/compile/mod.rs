@@ -1,13 +1,16 @@
 //! The table compiler: from a pair and a recipe to a table image (paper, section 4; coordinates of our own).
 //!
-//! Settle the axes, map the rigid contact, sample the direct solver at every node, quantise, write. Every step is a
-//! function of the recipe alone, so the image is the same for any number of threads.
+//! Settle the axes, map the rigid contact, sample the direct solver at every node, fit the node values to what lies
+//! between, quantise, write. Every step is a function of the recipe alone, so the image is the same for any number of threads.
 
 mod adaptive;
 mod axes;
+mod budget;
+mod fit;
 mod quantise;
 mod rigid_maps;
 mod sampler;
+mod stencil;
 mod trial;
 
 use flangeway::{ErrorFigures, Header, LANES, SLOTS, Scales, Side, SideHeader, Slot};
@@ -16,12 +19,13 @@ use sha2::{Digest, Sha256};
 
 pub use adaptive::Bound;
 pub use axes::{Axes, Uniform};
+pub use budget::{Budget, ChannelBudget};
 
 use crate::contact::{Curvature, Dimension, SlotState};
 use crate::error::{Error, Result};
 use crate::image::{ImageParts, SideParts, write_image};
 use crate::pair::Pair;
-use crate::recipe::{Nodes, Recipe};
+use crate::recipe::{NodeValues, Nodes, Recipe};
 use crate::verify;
 use sampler::Sampler;
 
@@ -38,6 +42,8 @@ pub struct Compiled {
     pub axes: Axes,
     /// Its measured errors, as in its header.
     pub errors: ErrorFigures,
+    /// What they are made of.
+    pub budget: Budget,
     /// What ended the refinement of the axes.
     pub bound: Bound,
 }
@@ -50,17 +56,21 @@ pub fn compile(recipe: &Recipe, pair: &Pair, uniform: Option<Uniform>) -> Result
     let mut compiler = Compiler::new(recipe, pair);
     let grid = &recipe.grid;
     let axes = [grid.lateral_m, grid.yaw_rad, grid.vertical_m, grid.roll_rad];
-    let (assembled, bound) = match uniform {
-        Some(uniform) => (compiler.assemble(Axes::uniform(recipe, uniform))?, Bound::Counts),
+    let (axes, bound) = match uniform {
+        Some(uniform) => (Axes::uniform(recipe, uniform), Bound::Counts),
         None if axes.iter().any(|axis| axis.nodes == Nodes::Auto) => adaptive::refine(recipe, &mut compiler)?,
-        None => (compiler.assemble(Axes::coarsest(recipe, pair.sides())?)?, Bound::Counts),
+        None => (Axes::coarsest(recipe, pair.sides())?, Bound::Counts),
     };
-    let errors = verify::figures(&assembled.image, pair, FIGURE_SAMPLES, FIGURE_SEED)?;
-    Ok(Compiled { image: compiler.image(&assembled, errors)?, axes: assembled.axes, errors, bound })
+    let table = compiler.assemble(axes, grid.node_values)?;
+    let errors = verify::figures(&table.image, pair, FIGURE_SAMPLES, FIGURE_SEED)?;
+    let budget = budget::measure(&table, pair, FIGURE_SAMPLES, FIGURE_SEED)?;
+    Ok(Compiled { image: compiler.image(&table, errors)?, axes: table.axes, errors, budget, bound })
 }
 
 /// One side, compiled.
 struct CompiledSide {
+    /// Node values before quantisation.
+    nodes: Vec<[SlotState; SLOTS]>,
     roll: Vec<f32>,
     vertical: Vec<f32>,
     records: Vec<[i16; LANES]>,
@@ -75,20 +85,23 @@ struct Assembled {
 }
 
 impl CompiledSide {
-    fn new(sampler: &Sampler<'_>, pair: &Pair, axes: &Axes) -> Self {
+    fn new(sampler: &Sampler<'_>, pair: &Pair, axes: &Axes, values: NodeValues) -> Result<Self> {
         let (roll, vertical) = rigid_maps::maps(sampler, axes);
-        let mut samples: Vec<[SlotState; SLOTS]> = Vec::with_capacity(axes.nodes());
+        let mut nodes: Vec<[SlotState; SLOTS]> = Vec::with_capacity(axes.nodes());
         for &u in &axes.lateral {
             for &yaw in &axes.yaw {
                 for &roll in &axes.roll {
-                    samples.extend(axes.vertical.iter().map(|&z| sampler.states(u, yaw, roll, z)));
+                    nodes.extend(axes.vertical.iter().map(|&z| sampler.states(u, yaw, roll, z)));
                 }
             }
         }
-        borrow_geometry(&mut samples, axes);
-        let scales = quantise::scales(&samples, pair.body(sampler.side).boundaries());
-        let records = samples.par_iter().map(|states| quantise::record(states, &scales)).collect();
-        Self { roll, vertical, records, scales }
+        borrow_geometry(&mut nodes, axes);
+        if values == NodeValues::Fitted {
+            fit::fit(&fit::Drawing::new(pair, sampler.side, axes, &roll, &vertical)?, axes, &mut nodes);
+        }
+        let scales = quantise::scales(&nodes, pair.body(sampler.side).boundaries());
+        let records = nodes.par_iter().map(|states| quantise::record(states, &scales)).collect();
+        Ok(Self { nodes, roll, vertical, records, scales })
     }
 
     fn parts(&self) -> SideParts<'_> {
@@ -135,11 +148,11 @@ impl<'a> Compiler<'a> {
     }
 
     /// The table of these axes.
-    fn assemble(&mut self, axes: Axes) -> Result<Assembled> {
+    fn assemble(&mut self, axes: Axes, values: NodeValues) -> Result<Assembled> {
         let mut sides = Vec::with_capacity(self.samplers.len());
         for sampler in &mut self.samplers {
             sampler.prepare(&axes)?;
-            sides.push(CompiledSide::new(sampler, self.pair, &axes));
+            sides.push(CompiledSide::new(sampler, self.pair, &axes, values)?);
         }
         let mut assembled = Assembled { axes, sides, image: Vec::new() };
         assembled.image = self.image(&assembled, ErrorFigures::default())?;
@@ -155,10 +168,11 @@ impl<'a> Compiler<'a> {
 fn image(recipe: &Recipe, pair: &Pair, axes: &Axes, sides: &[CompiledSide], errors: ErrorFigures) -> Result<Vec<u8>> {
     let settings = pair.body(Side::Right).settings();
     let solver = format!(
-        "hertz, {}, {} curvature, curvature floor {} 1/m",
+        "hertz, {}, {} curvature, curvature floor {} 1/m, {} nodes",
         if settings.dimension == Dimension::Two { "2d" } else { "3d" },
         if settings.curvature == Curvature::Mean { "mean" } else { "local" },
-        settings.curvature_floor
+        settings.curvature_floor,
+        if recipe.grid.node_values == NodeValues::Fitted { "fitted" } else { "sampled" }
     );
     let side_header = |side: Side, compiled: &CompiledSide| {
         let (source, body) = (pair.source(side), pair.body(side));

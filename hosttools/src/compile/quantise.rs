@@ -6,9 +6,10 @@ use crate::contact::SlotState;
 use crate::image::{quantise, scale_over, scale_through_zero};
 
 /// Deepest gap (m) that is stored; contact is far from any pose with a wider one.
-pub(super) const WIDEST_GAP: f64 = 1e-3;
+pub(super) const WIDEST_GAP: f64 = 0.3e-3;
 
-fn values(state: &SlotState) -> [f64; CHANNELS] {
+/// A slot's channels.
+pub(super) fn values(state: &SlotState) -> [f64; CHANNELS] {
     [
         state.indentation.max(-WIDEST_GAP),
         state.stiffness,
@@ -21,6 +22,22 @@ fn values(state: &SlotState) -> [f64; CHANNELS] {
         state.wheel_curvature,
         state.rail_curvature,
     ]
+}
+
+/// Replaces a slot's channels.
+pub(super) fn set_values(state: &mut SlotState, values: [f64; CHANNELS]) {
+    [
+        state.indentation,
+        state.stiffness,
+        state.semi_axis_x,
+        state.semi_axis_y,
+        state.longitudinal,
+        state.profile,
+        state.radius_offset,
+        state.angle,
+        state.wheel_curvature,
+        state.rail_curvature,
+    ] = values;
 }
 
 /// The scale of each slot's channels over all samples in which the slot is near the rail. The stiffness and the

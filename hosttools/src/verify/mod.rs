@@ -40,7 +40,7 @@ use crate::progress;
 /// Loads (N) that are drawn.
 pub const LOADS: [f64; 2] = [5e3, 150e3];
 /// Share of the total force from which on a contact counts as carrying.
-const CARRYING: f64 = 0.02;
+pub(crate) const CARRYING: f64 = 0.02;
 /// Lines drawn for the continuity figures in a table's header.
 const FIGURE_LINES: usize = 200;
 
