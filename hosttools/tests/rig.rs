@@ -140,6 +140,21 @@ fn rights_are_granted_or_refused_in_one_line() {
     }
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk() {
+    let folder = Folder::new();
+    let full = || std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    std::os::unix::fs::symlink("/dev/full", folder.path("full.svg")).unwrap();
+    for words in ["rig --duration 0.01 --json", "rig --duration 0.01 --svg full.svg"] {
+        let output = folder.run_into(words, full().into());
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{words}: {said}");
+        let last = said.lines().last().unwrap();
+        assert!(last.starts_with("flangeway: ") && last.contains("No space left on device"), "{words}: {said}");
+    }
+}
+
 /// A clock that goes on by a little with every look at it.
 struct Ticking(u64);
 
