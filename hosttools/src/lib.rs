@@ -16,6 +16,7 @@ pub mod profile_noise;
 pub mod progress;
 pub mod recipe;
 pub mod report;
+pub mod rig;
 pub mod rigid;
 pub mod spline;
 pub mod verify;

@@ -6,6 +6,7 @@ pub mod inspect;
 pub mod lookup;
 pub mod profile;
 pub mod quickstart;
+pub mod rig;
 pub mod rigid;
 pub mod solve;
 pub mod verify;
@@ -47,6 +48,8 @@ enum Command {
     Profile(profile::ProfileArgs),
     /// S1002 on 60E1: compile, verify, look up, and write a report, in well under a minute
     Quickstart(quickstart::QuickstartArgs),
+    /// Run a fixed-step loop as a test rig does, and report missed deadlines and step times
+    Rig(rig::RigArgs),
     /// Rigid contact: height and roll of the wheelset over lateral position and yaw
     Rigid(rigid::RigidArgs),
     /// Contacts of poses by the direct elastic solver
@@ -67,6 +70,7 @@ impl Cli {
             Command::Lookup(args) => lookup::run(args)?,
             Command::Profile(args) => profile::run(args)?,
             Command::Quickstart(args) => quickstart::run(args)?,
+            Command::Rig(args) => rig::run(args)?,
             Command::Rigid(args) => rigid::run(args)?,
             Command::Solve(args) => solve::run(args)?,
             Command::Verify(args) => return verify::run(args),

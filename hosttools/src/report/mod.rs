@@ -5,6 +5,7 @@ mod heat;
 mod page;
 mod positions;
 mod profiles;
+pub mod rig;
 mod rolling;
 mod style;
 mod sweep;
