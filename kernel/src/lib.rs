@@ -86,9 +86,17 @@ mod displacement;
 mod error;
 mod flags;
 mod header;
+#[cfg_attr(
+    all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable"), not(test)),
+    expect(dead_code, reason = "simd has the same")
+)]
+mod lanes;
 mod math;
 mod pose;
 mod rigid;
+#[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
+#[expect(unsafe_code, reason = "the prefetch takes a pointer")]
+mod simd;
 mod table;
 
 pub use axis::{Axis, AxisName, MAX_BINS, Place, bin_of, bins_per_unit};
