@@ -106,6 +106,7 @@ fn draw(path: &str, measured: &[(usize, Measured)]) -> Result<(), Box<dyn Error>
         let mut chart = ChartBuilder::on(&part)
             .caption(format!("{wheels} wheel{}", if *wheels == 1 { "" } else { "s" }), ("sans-serif", 18))
             .margin(12)
+            .margin_right(32)
             .x_label_area_size(40)
             .y_label_area_size(56)
             .build_cartesian_2d((50_f64..100_000.0).log_scale(), 0.0..100.0)?;
@@ -146,7 +147,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         for (name, histogram) in &measured.histograms {
             let [p50, p99, p999, max] = [0.5, 0.99, 0.999, 1.0].map(|q| histogram.value_at_quantile(q));
             println!("  {name:22} {p50:7} {p99:7} {p999:7} {max:8}");
-            let key = format!("{} {count}", name);
+            let key = format!("{name} {count}");
             json.insert(key, serde_json::json!({ "p50": p50, "p99": p99, "p999": p999, "max": max }));
         }
         for (name, way) in [("cold", 1), ("ahead", 2)] {
