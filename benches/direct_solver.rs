@@ -4,6 +4,8 @@
 
 #![allow(missing_docs, reason = "criterion_group! makes a public function")]
 
+mod common;
+
 use criterion::{Criterion, criterion_group, criterion_main};
 use flangeway::{ContactTable, Pose, Side};
 use flangeway_host::compile::{Uniform, compile};
@@ -50,5 +52,48 @@ fn contacts(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, contacts);
+/// Median time of each way over that of the rigid table, as the paper's figure 15 has it.
+fn ratios(_: &mut Criterion) {
+    let (_, pair) = common::pair();
+    let poses = poses(&pair);
+    let table = common::table();
+    let default = *pair.body(Side::Right).settings();
+    let (two, sweep) = (
+        pair.with_settings(Settings { dimension: Dimension::Two, ..default }),
+        pair.with_settings(Settings { method: Method::Sweep, ..default }),
+    );
+    let at: Vec<_> = poses.iter().map(|pose| table.coordinates(Side::Right, pose)).collect();
+    let mut by_rigid = || {
+        for at in (0..20_000).flat_map(|_| &at) {
+            black_box(table.rigid(Side::Right).vertical(black_box(at.lateral), at.yaw, at.roll_offset));
+        }
+    };
+    let solved = |pair: &Pair, poses: &[Pose]| {
+        poses.iter().for_each(|pose| {
+            black_box(pair.solve(Side::Right, black_box(pose)));
+        });
+    };
+    let (mut by_two, mut by_locus) = (|| solved(&two, &poses), || solved(&pair, &poses));
+    // The sweep takes a hundred times as long: fewer poses.
+    let mut by_sweep = || solved(&sweep, &poses[..4]);
+    let mut by_table = || {
+        for pose in (0..10_000).flat_map(|_| &poses) {
+            black_box(table.contacts(Side::Right, black_box(pose)));
+        }
+    };
+    let done = [20_000 * poses.len(), poses.len(), 4, poses.len(), 10_000 * poses.len()];
+    let mut ways: [&mut dyn FnMut(); 5] = [&mut by_rigid, &mut by_two, &mut by_sweep, &mut by_locus, &mut by_table];
+    let times = common::rounds(9, 1, &mut ways);
+    println!("\none wheel, time over the rigid table's (9 paired rounds, lower and upper quartile)");
+    for (way, name) in
+        ["rigid table", "2-D direct", "3-D direct, sweep", "3-D direct, locus", "3-D table"].iter().enumerate()
+    {
+        let each = |round: &[f64; 5], way: usize| round[way] / done[way] as f64;
+        let [low, median, high] =
+            common::quartiles(times.iter().map(|round| each(round, way) / each(round, 0)).collect());
+        println!("  {name:18} {median:10.2} ({low:.2} to {high:.2})");
+    }
+}
+
+criterion_group!(benches, contacts, ratios);
 criterion_main!(benches);

@@ -187,8 +187,11 @@ proptest! {
                 for channel in Channel::ALL {
                     let step = f64::from(source.sides[0].scales[slot.index()][channel.index()].step);
                     let difference = f64::from(channels[slot.index()][channel.index()]) - value(slot, channel, n, 0.0);
-                    // Half a step from rounding the nodes, and 2e-7 of full scale from f32.
-                    prop_assert!(difference.abs() < 0.515 * step, "{slot} {channel}: {} steps", difference / step);
+                    // Half a step from rounding the nodes; a hundredth from f32 and the fine weights, or what the
+                    // coarse weights leave where nodes lie 8,000 steps apart.
+                    let force = matches!(channel, Channel::Indentation | Channel::Stiffness);
+                    let most = if force { 0.515 } else { 1.5 };
+                    prop_assert!(difference.abs() < most * step, "{slot} {channel}: {} steps", difference / step);
                 }
             }
             Ok(())

@@ -1,20 +1,83 @@
-//! Multilinear blend of the sixteen records around a place in the table.
+//! Multilinear blend of the sixteen records around a place in the table, in integers.
 //!
-//! Sums run over the corners in a fixed order, one product and one sum a corner and lane, never fused: a version with
-//! vector instructions that keeps this order gives the same bits.
+//! Sums of integers are exact, so their order does not matter: the portable path below and the vector instructions of
+//! [`simd`](crate::simd) give the same bits. What is left for `f32` is the vertical fraction and the scale, the same
+//! few operations a lane in the same order everywhere.
+//!
+//! The eight edges' weights are the differences of a running sum S that ends at 2²⁷, so their sum is exact however they
+//! round. Bits 12 to 27 of S give the *coarse* weights, which every lane is blended with; bits 0 to 11 the *fine* ones,
+//! which are added for the lanes that make the force ([`FINE`]): a step of 2⁻¹⁵ of the distance between two nodes would
+//! show in the slope of the force over 10 nm, and implicit integrators take such slopes. Weights are stored negative,
+//! because -32768 fits an `i16` and 32768 does not.
+//!
+//! Measured against the same blend in `f64` over random records and weights (a test sweeps it), in quantisation steps:
+//! lanes with fine weights at most 0.0072, rms 0.0008; all others at most 5.1, rms 0.72, if neighbours differ by the
+//! whole range of `i16`, and in proportion less if they differ less.
 
-use crate::axis::Place;
-use crate::channel::{CHANNELS, LANES};
+use crate::axis::Places;
+use crate::channel::{CHANNELS, Channel, LANES, Slot};
 use crate::layout::RECORD;
-use crate::math::single;
+use crate::math::Two;
+
+/// Lanes of a block: a 128-bit vector of `i32` or `f32`.
+pub(crate) const BLOCK: usize = 4;
+/// Bits of the fine weights.
+pub(crate) const FINE_BITS: u32 = 12;
+/// Sum of all weights, 2²⁷.
+const ONE: f64 = 134_217_728.0;
+/// One step of the fine weights in steps of the coarse ones, 2⁻¹².
+pub(crate) const FINE_STEP: f32 = 1.0 / 4096.0;
+/// One step of a record in steps of a blended lane, -2⁻¹⁵, negative as the weights are.
+const STEP: f32 = -1.0 / 32_768.0;
+
+/// Blocks of four lanes that are blended with fine weights: those with a slot's indentation and its C.
+pub(crate) const FINE: [bool; LANES / BLOCK] = [true, false, true, false, false, true, false, false];
+
+#[expect(clippy::indexing_slicing, reason = "evaluated by the compiler")]
+const _: () = {
+    let mut slot = 0;
+    while slot < Slot::ALL.len() {
+        assert!(FINE[Channel::Indentation.lane(Slot::ALL[slot]) / BLOCK]);
+        assert!(FINE[Channel::Stiffness.lane(Slot::ALL[slot]) / BLOCK]);
+        slot += 1;
+    }
+};
+
+/// Blended lanes in their units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(32))]
+pub(crate) struct Lanes(pub(crate) [f32; LANES]);
+
+impl Lanes {
+    pub(crate) const ZERO: Self = Self([0.0; LANES]);
+}
+
+/// Scales of the lanes: value = offset + step * blended lane, the step divided by what the weights sum to.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(32))]
+pub(crate) struct LaneScales {
+    pub(crate) offsets: [f32; LANES],
+    pub(crate) steps: [f32; LANES],
+}
+
+impl LaneScales {
+    /// Scales of a record's integers; lanes without a scale keep their integers.
+    pub(crate) fn new(scales: &[crate::channel::Scale]) -> Self {
+        let (mut offsets, mut steps) = ([0.0; LANES], [STEP; LANES]);
+        for ((offset, step), scale) in offsets.iter_mut().zip(steps.iter_mut()).zip(scales) {
+            (*offset, *step) = (scale.offset, scale.step * STEP);
+        }
+        Self { offsets, steps }
+    }
+}
 
 /// The cell of the records' grid that a coordinate lies in.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct Cell {
     /// First records of the cell's eight vertical edges; the upper node's record follows the lower node's.
-    pub(crate) edges: [usize; 8],
-    /// Weights of the edges.
-    pub(crate) weights: [f32; 8],
+    pub(crate) edges: [u32; 8],
+    /// Running sum of the edges' weights, the last one 2²⁷.
+    pub(crate) sums: [Two; 4],
     /// Position between the vertical nodes, 0 to 1.
     pub(crate) fraction: f32,
     /// The same outside the axis, not clamped.
@@ -22,87 +85,257 @@ pub(crate) struct Cell {
 }
 
 impl Cell {
-    /// The cell at these places of a grid with `counts` nodes (lateral, yaw, roll offset, vertical; vertical varies
-    /// fastest).
-    #[inline]
-    pub(crate) fn new(places: &[Place; 4], counts: [usize; 4]) -> Self {
-        let [lateral, yaw, roll, vertical] = places;
-        let [_, yaws, rolls, verticals] = counts;
-        let (yaw_stride, roll_stride) = (rolls * verticals, verticals);
-        let lateral_stride = yaws * yaw_stride;
-        let base = lateral.cell * lateral_stride + yaw.cell * yaw_stride + roll.cell * roll_stride + vertical.cell;
-        let edge = |i: usize, j: usize, k: usize| base + i * lateral_stride + j * yaw_stride + k * roll_stride;
-        let (u, p, r) = (single(lateral.fraction), single(yaw.fraction), single(roll.fraction));
-        let (u0, p0, r0) = (1.0 - u, 1.0 - p, 1.0 - r);
+    /// The cell at these places (lateral and yaw, roll offset and vertical) of a grid with these strides; vertical
+    /// varies fastest.
+    #[inline(always)]
+    pub(crate) fn new([plane, section]: [&Places; 2], strides: [u32; 3]) -> Self {
+        let ([lateral, yaw], [roll, vertical]) = (plane.cells, section.cells);
+        let [i, j, k] = strides;
+        let base = lateral * i + yaw * j + roll * k + vertical;
+        let ([_, fraction], [_, unclamped]) = (section.fraction.single(), section.unclamped.single());
         Self {
-            edges: [
-                edge(0, 0, 0),
-                edge(0, 0, 1),
-                edge(0, 1, 0),
-                edge(0, 1, 1),
-                edge(1, 0, 0),
-                edge(1, 0, 1),
-                edge(1, 1, 0),
-                edge(1, 1, 1),
-            ],
-            weights: [
-                u0 * p0 * r0,
-                u0 * p0 * r,
-                u0 * p * r0,
-                u0 * p * r,
-                u * p0 * r0,
-                u * p0 * r,
-                u * p * r0,
-                u * p * r,
-            ],
-            fraction: single(vertical.fraction),
-            unclamped: single(vertical.unclamped),
+            edges: [base, base + k, base + j, base + j + k, base + i, base + i + k, base + i + j, base + i + j + k],
+            sums: running_sums(plane.fraction, section.fraction),
+            fraction,
+            unclamped,
         }
     }
 }
 
-const NOTHING: [u8; RECORD] = [0; RECORD];
-
-/// The record at an index; a record of zeros beyond the last, which a checked table never asks for.
-#[inline]
-pub(crate) fn record(records: &[[u8; RECORD]], index: usize) -> &[u8; RECORD] {
-    records.get(index).unwrap_or(&NOTHING)
+/// Running sum of the weights (1 - u or u)(1 - p or p)(1 - r or r) with r fastest, times 2²⁷, by splitting the whole in
+/// two along u, each half along p, each quarter along r.
+#[inline(always)]
+fn running_sums(plane: Two, section: Two) -> [Two; 4] {
+    let ([u, p], [r, _]) = ((Two::all(1.0) - plane).numbers(), (Two::all(1.0) - section).numbers());
+    let half = ONE * u;
+    let (quarter, three_quarters) = (half * p, half + (ONE - half) * p);
+    let split = |begin: Two, end: Two| Two::transpose([begin + (end - begin) * Two::all(r), end]);
+    let [a, b] = split(Two::new([0.0, quarter]), Two::new([quarter, half]));
+    let [c, d] = split(Two::new([half, three_quarters]), Two::new([three_quarters, ONE]));
+    [a, b, c, d]
 }
 
-/// Adds weight * record to the sums.
-#[inline]
-fn add(sums: &mut [f32; LANES], weight: f32, record: &[u8; RECORD]) {
-    for (sum, bytes) in sums.iter_mut().zip(record.as_chunks().0) {
-        *sum += weight * f32::from(i16::from_le_bytes(*bytes));
-    }
+/// Records of nothing, for an index that a checked table never asks for.
+static NOTHING: [[u8; RECORD]; 2] = [[0; RECORD]; 2];
+
+/// The two records of a vertical edge.
+#[inline(always)]
+pub(crate) fn edge(records: &[[u8; RECORD]], index: u32) -> &[[u8; RECORD]; 2] {
+    let index = index as usize;
+    records.get(index..index + 2).and_then(<[_]>::first_chunk).unwrap_or(&NOTHING)
 }
 
-/// Blended lanes, still in quantisation steps:
+/// Fractions between the vertical nodes by lane of a block: not clamped for a slot's indentation.
+#[inline(always)]
+pub(crate) fn fractions(cell: &Cell, block: usize) -> [f32; BLOCK] {
+    let of = |i: usize| {
+        let lane = block * BLOCK + i;
+        let indentation = lane % CHANNELS == Channel::Indentation.index() && lane < Slot::ALL.len() * CHANNELS;
+        if indentation { cell.unclamped } else { cell.fraction }
+    };
+    [of(0), of(1), of(2), of(3)]
+}
+
+/// Blended lanes:
 ///
 /// ```text
-/// lower = Σ weight_k q_k    over the eight edges, at their lower node; upper likewise
+/// W_k   = S_k - S_(k-1)                     coarse and fine part
+/// lower = Σ W_k q_k    over the eight edges, at their lower node; upper likewise
 /// q     = lower + t (upper - lower)
+/// value = offset + step q
 /// ```
 ///
 /// with t not clamped for the indentations, clamped for everything else.
-#[inline]
-pub(crate) fn blend(records: &[[u8; RECORD]], cell: &Cell) -> [f32; LANES] {
-    let mut lower = [0.0; LANES];
-    let mut upper = [0.0; LANES];
-    for (edge, weight) in cell.edges.iter().zip(cell.weights) {
-        add(&mut lower, weight, record(records, *edge));
-        add(&mut upper, weight, record(records, edge + 1));
-    }
-    let mut blended = [0.0; LANES];
-    for ((q, low), high) in blended.iter_mut().zip(&lower).zip(&upper) {
-        *q = low + cell.fraction * (high - low);
-    }
-    // The first channel of each slot.
-    let slots = blended.chunks_exact_mut(CHANNELS).zip(lower.chunks_exact(CHANNELS)).zip(upper.chunks_exact(CHANNELS));
-    for ((q, low), high) in slots {
-        if let ([q, ..], [low, ..], [high, ..]) = (q, low, high) {
-            *q = low + cell.unclamped * (high - low);
+#[cfg_attr(
+    all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable"), not(test)),
+    expect(dead_code, reason = "see simd")
+)]
+#[inline(always)]
+pub(crate) fn portable(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales, lanes: &mut Lanes) {
+    let edges = cell.edges.map(|index| edge(records, index));
+    let mut before = 0;
+    let [[a, b], [c, d], [e, f], [g, h]] = cell.sums.map(Two::numbers);
+    let weights = [a, b, c, d, e, f, g, h].map(|sum| {
+        let sum = whole(sum);
+        let weights = Weights {
+            coarse: short((before >> FINE_BITS) - (sum >> FINE_BITS)),
+            fine: short((before & FINE_MASK) - (sum & FINE_MASK)),
+        };
+        before = sum;
+        weights
+    });
+    for (block, out) in lanes.0.as_chunks_mut::<BLOCK>().0.iter_mut().enumerate() {
+        let fine = FINE.get(block).copied().unwrap_or_default();
+        let t = fractions(cell, block);
+        for (i, (value, t)) in out.iter_mut().zip(t).enumerate() {
+            let lane = block * BLOCK + i;
+            let scale = |numbers: &[f32; LANES]| numbers.get(lane).copied().unwrap_or_default();
+            let (low, high) = sums(&edges, &weights, lane, |w| w.coarse);
+            let (mut base, mut rise) = (float(low), float(high - low));
+            if fine {
+                let (low, high) = sums(&edges, &weights, lane, |w| w.fine);
+                base += float(low) * FINE_STEP;
+                rise += float(high - low) * FINE_STEP;
+            }
+            *value = scale(&scales.offsets) + scale(&scales.steps) * (base + t * rise);
         }
     }
-    blended
+}
+
+/// Weights of an edge.
+#[derive(Clone, Copy)]
+struct Weights {
+    coarse: i16,
+    fine: i16,
+}
+
+/// Sums of a lane over the edges, at their lower and upper nodes.
+#[inline(always)]
+fn sums(
+    edges: &[&[[u8; RECORD]; 2]; 8],
+    weights: &[Weights; 8],
+    lane: usize,
+    of: impl Fn(&Weights) -> i16,
+) -> (i32, i32) {
+    let q = |record: &[u8; RECORD]| {
+        i32::from(i16::from_le_bytes(record.as_chunks().0.get(lane).copied().unwrap_or_default()))
+    };
+    edges.iter().zip(weights).fold((0, 0), |(lower, upper), ([low, high], weights)| {
+        let weight = i32::from(of(weights));
+        (lower + weight * q(low), upper + weight * q(high))
+    })
+}
+
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, reason = "weights lie within i16")]
+fn short(weight: i32) -> i16 {
+    weight as i16
+}
+
+/// A sum as `f32`, rounded.
+#[inline(always)]
+#[expect(clippy::cast_precision_loss, reason = "rounding is the purpose")]
+fn float(sum: i32) -> f32 {
+    sum as f32
+}
+
+/// Mask of the fine weights' bits.
+pub(crate) const FINE_MASK: i32 = (1 << FINE_BITS) - 1;
+
+/// A number within ±2³¹ rounded to the nearest integer, half to even: adding 1.5 · 2⁵² leaves it in the low bits.
+#[inline(always)]
+fn whole(x: f64) -> i32 {
+    #[expect(clippy::cast_possible_truncation, reason = "the integer is in the low 32 bits")]
+    let low = (x + 6_755_399_441_055_744.0).to_bits() as i32;
+    low
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec::Vec;
+
+    /// Any numbers: a linear congruential stream.
+    struct Stream(u64);
+
+    impl Stream {
+        fn next(&mut self) -> u32 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 32) as u32
+        }
+
+        /// 0 to 1, both ends now and then.
+        fn fraction(&mut self) -> f64 {
+            match self.next() % 16 {
+                0 => 0.0,
+                1 => 1.0,
+                _ => f64::from(self.next()) / f64::from(u32::MAX),
+            }
+        }
+    }
+
+    fn places(fractions: [f64; 2], unclamped: [f64; 2]) -> Places {
+        Places { cells: [0; 2], fraction: Two::new(fractions), unclamped: Two::new(unclamped), clamped: 0 }
+    }
+
+    /// The corners' product weights and the vertical lines, in `f64`.
+    fn exact(records: &[[u8; RECORD]], [u, p, r, t]: [f64; 4], lane: usize) -> f64 {
+        let q = |index: usize| f64::from(i16::from_le_bytes(records[index].as_chunks().0[lane]));
+        let weight = |k: usize| {
+            let side = |t: f64, bit: usize| if k >> bit & 1 == 1 { t } else { 1.0 - t };
+            side(u, 2) * side(p, 1) * side(r, 0)
+        };
+        (0..8).map(|k| weight(k) * (q(2 * k) + t * (q(2 * k + 1) - q(2 * k)))).sum()
+    }
+
+    /// Calls `check` with random records, fractions and the blend in quantisation steps.
+    fn sweep(mut check: impl FnMut(&[[u8; RECORD]], [f64; 4], &Lanes)) {
+        let mut stream = Stream(1);
+        let scales = LaneScales::new(&[]);
+        for round in 0..20_000 {
+            let records: Vec<[u8; RECORD]> = (0..16)
+                .map(|_| {
+                    core::array::from_fn(|i| match round % 4 {
+                        // The extremes of the integers, and anything.
+                        0 => [[255, 127], [0, 128]][stream.next() as usize / 7 % 2][i % 2],
+                        _ => stream.next().to_le_bytes()[1],
+                    })
+                })
+                .collect();
+            let [u, p, r, t] = core::array::from_fn(|_| stream.fraction());
+            let cell = Cell::new([&places([u, p], [u, p]), &places([r, t], [r, t])], [8, 4, 2]);
+            let mut lanes = Lanes::ZERO;
+            portable(&records, &cell, &scales, &mut lanes);
+            check(&records, [u, p, r, t], &lanes);
+            #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
+            {
+                let bits = |lanes: &Lanes| lanes.0.map(f32::to_bits);
+                let mut other = Lanes::ZERO;
+                crate::simd::blend_128(&records, &cell, &scales, &mut other);
+                assert_eq!(bits(&lanes), bits(&other));
+                crate::simd::blend(&records, &cell, &scales, &mut other);
+                assert_eq!(bits(&lanes), bits(&other));
+            }
+        }
+    }
+
+    #[test]
+    fn error_against_f64_and_same_bits_in_all_paths() {
+        // Largest, sum of squares and count, of coarse and fine lanes.
+        let mut errors = [(0.0_f64, 0.0_f64, 0.0_f64); 2];
+        sweep(|records, fractions, lanes| {
+            for (lane, found) in lanes.0.iter().enumerate() {
+                let error = (f64::from(*found) - exact(records, fractions, lane)).abs();
+                let (largest, squares, count) = &mut errors[usize::from(FINE[lane / BLOCK])];
+                (*largest, *squares, *count) = (largest.max(error), *squares + error * error, *count + 1.0);
+            }
+        });
+        let [coarse, fine] = errors.map(|(largest, squares, count)| (largest, libm::sqrt(squares / count)));
+        std::println!("error in steps, largest and rms: coarse {coarse:?}, fine {fine:?}");
+        assert!(coarse.0 < COARSE_ERROR && coarse.1 < COARSE_RMS, "{coarse:?}");
+        assert!(fine.0 < FINE_ERROR && fine.1 < FINE_RMS, "{fine:?}");
+    }
+
+    /// Measured errors in quantisation steps, rounded up; the module's documentation quotes them.
+    const COARSE_ERROR: f64 = 5.1;
+    const COARSE_RMS: f64 = 0.72;
+    const FINE_ERROR: f64 = 0.0072;
+    const FINE_RMS: f64 = 0.0008;
+
+    #[test]
+    fn equal_corners_blend_to_themselves() {
+        let mut stream = Stream(2);
+        let scales = LaneScales::new(&[]);
+        for value in [i16::MIN, -1, 0, 1, 12_345, i16::MAX] {
+            let mut record = [0; RECORD];
+            record.as_chunks_mut().0.fill(value.to_le_bytes());
+            for _ in 0..1000 {
+                let [u, p, r, t] = core::array::from_fn(|_| stream.fraction());
+                let cell = Cell::new([&places([u, p], [u, p]), &places([r, t], [r, t])], [8, 4, 2]);
+                let mut lanes = Lanes::ZERO;
+                portable(&[record; 16], &cell, &scales, &mut lanes);
+                assert_eq!(lanes.0, [f32::from(value); LANES]);
+            }
+        }
+    }
 }

@@ -3,17 +3,17 @@
 use heapless::Vec;
 use nalgebra::Vector3;
 
+use crate::blend::Lanes;
 use crate::channel::{CHANNELS, SLOTS, Slot};
-use crate::displacement::{Attitude, Displacement};
+use crate::displacement::Attitude;
 use crate::flags::Flags;
-use crate::math::{single, sqrt};
+use crate::math::{Four, Two, single};
 use crate::pose::{Canonical, WheelGeometry};
 
 /// One contact between wheel and rail, in the [track frame](crate#frame).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
 pub struct Contact {
-    /// Region of the wheel profile.
-    pub slot: Slot,
     /// Normal force N = C delta^1.5, N.
     pub normal_force: f32,
     /// Indentation delta along the common normal, m.
@@ -33,21 +33,32 @@ pub struct Contact {
     pub wheel_curvature: f32,
     /// Curvature of the rail profile, 1/m.
     pub rail_curvature: f32,
+    /// Region of the wheel profile.
+    pub slot: Slot,
 }
 
 impl Contact {
-    const NONE: Self = Self {
-        slot: Slot::Tread,
-        normal_force: 0.0,
-        indentation: 0.0,
-        position: Vector3::new(0.0, 0.0, 0.0),
-        angle: 0.0,
-        rolling_radius: 0.0,
-        wheel_coordinate: 0.0,
-        semi_axes: [0.0; 2],
-        wheel_curvature: 0.0,
-        rail_curvature: 0.0,
-    };
+    const NONE: Self = Self::new(Slot::Tread, [0.0; 4], [0.0; 4], [0.0; 4]);
+
+    /// A contact from its numbers in order.
+    #[inline]
+    const fn new(slot: Slot, first: [f32; 4], second: [f32; 4], third: [f32; 4]) -> Self {
+        let [normal_force, indentation, x, y] = first;
+        let [z, angle, rolling_radius, wheel_coordinate] = second;
+        let [along, across, wheel_curvature, rail_curvature] = third;
+        Self {
+            normal_force,
+            indentation,
+            position: Vector3::new(x, y, z),
+            angle,
+            rolling_radius,
+            wheel_coordinate,
+            semi_axes: [along, across],
+            wheel_curvature,
+            rail_curvature,
+            slot,
+        }
+    }
 
     /// Unit vector of the normal force on the wheel, (0, sin α, -cos α): up, and on the gauge side towards the track's
     /// centre. It has no x component, since the rail is prismatic.
@@ -103,43 +114,81 @@ impl<'a> IntoIterator for &'a Contacts {
     }
 }
 
-/// What rebuilding needs beside the channels.
-pub(crate) struct Frame<'a> {
-    pub(crate) geometry: &'a WheelGeometry,
-    pub(crate) canonical: &'a Canonical,
-    pub(crate) attitude: &'a Attitude,
-    pub(crate) displacement: &'a Displacement,
+/// Size and place of a wheel, four times.
+#[derive(Clone, Copy)]
+pub(crate) struct Wheel {
+    radius: Four,
+    place: Four,
 }
 
-/// The contact of a slot from its channels, mirrored back to the wheel that was asked for.
+impl Wheel {
+    pub(crate) fn new(geometry: &WheelGeometry) -> Self {
+        let all = |x: f64| Four::all(single(x));
+        Self { radius: all(geometry.nominal_radius), place: all(geometry.lateral_position) }
+    }
+}
+
+/// What rebuilding needs beside the channels.
+pub(crate) struct Frame<'a> {
+    pub(crate) wheel: &'a Wheel,
+    pub(crate) canonical: &'a Canonical,
+    pub(crate) attitude: &'a Attitude,
+    /// u + b and w: where the tape-circle point lies, m.
+    pub(crate) place: [f64; 2],
+}
+
+/// Two numbers, each four times.
+#[inline(always)]
+fn both(numbers: [f64; 2]) -> [Four; 2] {
+    let [a, b] = Two::new(numbers).single();
+    [Four::all(a), Four::all(b)]
+}
+
+/// Contacts of the three slots and one that is not used, quantity by quantity.
+struct Candidates {
+    /// N, δ, x, y, as the first four numbers of a [`Contact`].
+    first: [Four; 4],
+    /// z, angle, rolling radius, wheel coordinate.
+    second: [Four; 4],
+    /// Semi-axes, curvatures of wheel and rail.
+    third: [Four; 4],
+}
+
+/// The slots' contacts from their blended channels, mirrored back to the wheel that was asked for.
 ///
 /// Force and ellipse (Johnson, Contact Mechanics, 4.2; the paper's lookup), with δ+ = max(δ, 0):
 ///
 /// ```text
 /// N = C δ+^1.5        a = K sqrt(δ+)        b = K' sqrt(δ+)
 /// ```
-#[inline]
-pub(crate) fn rebuild(slot: Slot, channels: &[f32; CHANNELS], frame: &Frame<'_>) -> Contact {
-    let [indentation, c, k, k_across, e, s, radius_offset, angle, wheel_curvature, rail_curvature] = *channels;
-    let depth = indentation.max(0.0);
-    let root = sqrt(depth);
-    let rolling_radius = single(frame.geometry.nominal_radius) + radius_offset;
-    let (lateral_sign, longitudinal_sign) =
-        (single(frame.canonical.lateral_sign), single(frame.canonical.longitudinal_sign));
+#[inline(always)]
+fn rebuild(lanes: &Lanes, frame: &Frame<'_>) -> Candidates {
+    let [indentation, c, k, k_across] = Four::transpose(channels(lanes, 0));
+    let [e, s, radius_offset, angle] = Four::transpose(channels(lanes, 4));
+    let [_, _, wheel_curvature, rail_curvature] = Four::transpose(channels(lanes, 6));
+    let zero = Four::all(0.0);
+    let depth = indentation.at_least(zero);
+    let root = depth.sqrt();
+    let rolling_radius = frame.wheel.radius + radius_offset;
+    let [lateral_sign, longitudinal_sign] = both([frame.canonical.lateral_sign, frame.canonical.longitudinal_sign]);
     let [x, y, z] = position(e, s, radius_offset, rolling_radius, frame);
-    Contact {
-        slot,
-        // N = C δ+ sqrt(δ+)
-        normal_force: c.max(0.0) * (depth * root),
-        indentation,
-        position: Vector3::new(longitudinal_sign * x, lateral_sign * y, z),
-        angle: lateral_sign * angle,
-        rolling_radius,
-        wheel_coordinate: s,
-        semi_axes: [k.max(0.0) * root, k_across.max(0.0) * root],
-        wheel_curvature,
-        rail_curvature,
+    // N = C δ+ sqrt(δ+)
+    let normal_force = c.at_least(zero) * (depth * root);
+    Candidates {
+        first: [normal_force, indentation, longitudinal_sign * x, lateral_sign * y],
+        second: [z, lateral_sign * angle, rolling_radius, s],
+        third: [k.at_least(zero) * root, k_across.at_least(zero) * root, wheel_curvature, rail_curvature],
     }
+}
+
+/// Four channels from this one on, of each slot; the last slot twice.
+#[inline(always)]
+fn channels(lanes: &Lanes, from: usize) -> [Four; 4] {
+    let of = |slot: usize| {
+        let start = slot * CHANNELS + from;
+        Four::new(lanes.0.get(start..start + 4).and_then(<[_]>::first_chunk).copied().unwrap_or_default())
+    };
+    [of(0), of(1), of(2), of(2)]
 }
 
 /// Contact point in the track frame of the canonical wheel.
@@ -154,45 +203,75 @@ pub(crate) fn rebuild(slot: Slot, channels: &[f32; CHANNELS], frame: &Frame<'_>)
 /// y  = u + b + e sin ψ + cos ψ (s cos φ - h sin φ)
 /// z  = w + s sin φ + h cos φ
 /// ```
-#[inline]
-fn position(e: f32, s: f32, radius_offset: f32, radius: f32, frame: &Frame<'_>) -> [f32; 3] {
-    let (b, r0) = (frame.geometry.lateral_position, frame.geometry.nominal_radius);
-    let (sin_psi, cos_psi) = (single(frame.attitude.yaw.sin), single(frame.attitude.yaw.cos));
-    let (sin_phi, cos_phi) = (single(frame.attitude.roll.sin), single(frame.attitude.roll.cos));
+#[inline(always)]
+fn position(e: Four, s: Four, radius_offset: Four, radius: Four, frame: &Frame<'_>) -> [Four; 3] {
+    let (b, r0) = (frame.wheel.place, frame.wheel.radius);
+    let (psi, phi) = (&frame.attitude.yaw, &frame.attitude.roll);
+    let ([sin_psi, sin_phi], [cos_psi, cos_phi]) = (both([psi.sin, phi.sin]), both([psi.cos, phi.cos]));
+    let [place_y, place_z] = both(frame.place);
     // h = (R - r0) - e² / (R + sqrt(R² - e²))
-    let h = radius_offset - e * e / (radius + sqrt(radius * radius - e * e));
+    let e_squared = e * e;
+    let h = radius_offset - e_squared / (radius + (radius * radius - e_squared).at_least(Four::all(0.0)).sqrt());
     // y' = (b + s) cos φ - (r0 + h) sin φ
-    let turned = (single(b) + s) * cos_phi - (single(r0) + h) * sin_phi;
+    let turned = (b + s) * cos_phi - (r0 + h) * sin_phi;
     [
         // x = e cos ψ - y' sin ψ
         e * cos_psi - turned * sin_psi,
         // y = u + b + e sin ψ + cos ψ (s cos φ - h sin φ)
-        single(frame.displacement.lateral + b) + (e * sin_psi + cos_psi * (s * cos_phi - h * sin_phi)),
+        place_y + (e * sin_psi + cos_psi * (s * cos_phi - h * sin_phi)),
         // z = w + s sin φ + h cos φ
-        single(frame.displacement.vertical) + (s * sin_phi + h * cos_phi),
+        place_z + (s * sin_phi + h * cos_phi),
     ]
 }
 
-/// The contacts that carry force, the same work for any number of them.
-#[inline]
-pub(crate) fn select(candidates: [Contact; SLOTS], valid: bool, flags: Flags) -> Contacts {
-    let mut list = [Contact::NONE; SLOTS];
-    let mut length = 0;
-    for candidate in candidates {
-        // A contact without force is written too, and overwritten by the next or cut off at the end.
-        if let Some(place) = list.get_mut(length) {
-            *place = candidate;
+/// Where the slots' contacts go in the list, and how many there are, by the bits that say which carry force.
+static PLACES: [([u8; SLOTS], u8); 8] = [
+    ([0, 0, 0], 0),
+    ([0, 1, 1], 1),
+    ([0, 0, 1], 1),
+    ([0, 1, 2], 2),
+    ([0, 0, 0], 1),
+    ([0, 1, 1], 2),
+    ([0, 0, 1], 2),
+    ([0, 1, 2], 3),
+];
+
+impl Contacts {
+    /// None, without remarks.
+    pub const NONE: Self = Self { list: Vec::new(), flags: Flags::NONE };
+
+    /// Takes the slots' contacts that carry force, none if not `valid`; the same work for any number of them. Returns
+    /// whether there is any.
+    #[inline(always)]
+    pub(crate) fn fill(&mut self, lanes: &Lanes, frame: &Frame<'_>, valid: bool) -> bool {
+        let candidates = rebuild(lanes, frame);
+        let carries = candidates.first[0].above_zero() & usize::from(valid).wrapping_neg();
+        let (first, second) = (Four::transpose(candidates.first), Four::transpose(candidates.second));
+        let third = Four::transpose(candidates.third);
+        self.list.clear();
+        for _ in 0..SLOTS {
+            // There is room for as many as there are slots.
+            let _ = self.list.push(Contact::NONE);
         }
-        length += usize::from(valid & (candidate.normal_force > 0.0));
+        let (places, length) = PLACES.get(carries & 7).copied().unwrap_or_default();
+        let slots = Slot::ALL.into_iter().zip(first).zip(second).zip(third).zip(places);
+        for ((((slot, first), second), third), place) in slots {
+            // A contact without force is written too, and overwritten by the next or cut off at the end.
+            if let Some(contact) = self.list.get_mut(usize::from(place)) {
+                *contact = Contact::new(slot, first.numbers(), second.numbers(), third.numbers());
+            }
+        }
+        let length = usize::from(length);
+        self.list.truncate(length);
+        length > 0
     }
-    let mut list = Vec::from_array(list);
-    list.truncate(length);
-    Contacts { list, flags }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::channel::Channel;
+    use crate::pose::{Pose, Side};
 
     fn tilted(angle: f32) -> Contact {
         Contact { angle, ..Contact::NONE }
@@ -223,17 +302,24 @@ mod tests {
 
     #[test]
     fn contacts_without_force_are_left_out() {
-        let loaded = |slot, normal_force| Contact { slot, normal_force, ..Contact::NONE };
-        for bits in 0..8_u8 {
-            let force = |i: u8| if bits >> i & 1 == 1 { 10.0 * f32::from(i + 1) } else { 0.0 };
-            let all =
-                [loaded(Slot::Tread, force(0)), loaded(Slot::FlangeRoot, force(1)), loaded(Slot::Flange, force(2))];
-            let contacts = select(all, true, Flags::NONE);
-            assert!(contacts.iter().eq(all.iter().filter(|c| c.normal_force > 0.0)));
-            assert_eq!(contacts.total_normal_force(), force(0) + force(1) + force(2));
+        let geometry = WheelGeometry { nominal_radius: 0.46, lateral_position: 0.75 };
+        let (wheel, attitude) = (Wheel::new(&geometry), Attitude::new(0.0, 0.0));
+        let canonical = Pose::default().canonical(Side::Right);
+        let frame = Frame { wheel: &wheel, canonical: &canonical, attitude: &attitude, place: [0.75, 0.0] };
+        for bits in 0..8_usize {
+            let mut lanes = Lanes::ZERO;
+            let carrying = || Slot::ALL.into_iter().filter(|slot| bits >> slot.index() & 1 == 1);
+            for slot in Slot::ALL {
+                lanes.0[Channel::Stiffness.lane(slot)] = [1e10, 2e10, 3e10][slot.index()];
+                lanes.0[Channel::Indentation.lane(slot)] = if bits >> slot.index() & 1 == 1 { 1e-4 } else { -1e-4 };
+            }
+            let mut contacts = Contacts::NONE;
+            assert_eq!(contacts.fill(&lanes, &frame, true), bits != 0);
+            assert!(contacts.iter().map(|contact| contact.slot).eq(carrying()));
+            assert_eq!(contacts.total_normal_force(), contacts.iter().map(|c| c.normal_force).sum::<f32>());
             // Forces grow with the slot.
-            assert_eq!(contacts.strongest().map(|c| c.slot), contacts.iter().last().map(|c| c.slot));
-            assert!(select(all, false, Flags::INVALID_INPUT).list.is_empty());
+            assert_eq!(contacts.strongest().map(|c| c.slot), carrying().next_back());
+            assert!(!contacts.fill(&lanes, &frame, false) && contacts.list.is_empty());
         }
     }
 }

@@ -1,6 +1,6 @@
 //! From the wheelset's pose to the displacement of one wheel's tape-circle point, and back.
 
-use crate::math::Angle;
+use crate::math::{Angle, Two};
 use crate::pose::{Pose, WheelGeometry};
 
 /// Displacement of the wheel's tape-circle point at rail level from where it is at pose zero, in the
@@ -27,7 +27,8 @@ impl Attitude {
     #[inline]
     #[must_use]
     pub fn new(yaw: f64, roll: f64) -> Self {
-        Self { yaw: Angle::new(yaw), roll: Angle::new(roll) }
+        let [yaw, roll] = Angle::pair(Two::new([yaw, roll]));
+        Self { yaw, roll }
     }
 
     /// What the rotation alone displaces the tape-circle point by.

@@ -59,6 +59,12 @@ impl Flags {
         self.0
     }
 
+    /// The flags of the records' axes, bit i for axis i.
+    #[inline]
+    pub(crate) const fn of_axes(bits: u8) -> Self {
+        Self(bits)
+    }
+
     /// These flags where `condition` holds, none otherwise; without a branch.
     #[inline]
     pub(crate) const fn when(self, condition: bool) -> Self {

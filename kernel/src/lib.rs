@@ -66,7 +66,8 @@
 //!
 //! # Features
 //!
-//! None by default. `micromath` adds `Contact::normal_fast`.
+//! None by default. `micromath` adds `Contact::normal_fast`. `portable` leaves the processor's vector instructions
+//! unused, which changes no bit of any answer.
 #![no_std]
 #![warn(clippy::std_instead_of_core)]
 #![warn(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_lossless, clippy::cast_precision_loss)]
@@ -86,9 +87,17 @@ mod displacement;
 mod error;
 mod flags;
 mod header;
+#[cfg_attr(
+    all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable"), not(test)),
+    expect(dead_code, reason = "simd has the same")
+)]
+mod lanes;
 mod math;
 mod pose;
 mod rigid;
+#[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
+#[expect(unsafe_code, reason = "the processor's instructions by name, see there")]
+mod simd;
 mod table;
 
 pub use axis::{Axis, AxisName, MAX_BINS, Place, bin_of, bins_per_unit};

@@ -1,5 +1,10 @@
 //! The kernel's only square root, sines and cosines: the same bits on every target, the same work for every argument.
 
+#[cfg(not(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable"))))]
+pub(crate) use crate::lanes::{Four, Two};
+#[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
+pub(crate) use crate::simd::{Four, Two};
+
 /// Largest angle of yaw and roll that is computed, rad; larger ones are clamped and flagged.
 pub const ANGLE_LIMIT: f64 = 0.125;
 
@@ -26,21 +31,43 @@ impl Angle {
     #[inline]
     #[must_use]
     pub fn new(angle: f64) -> Self {
-        let x = angle.clamp(-ANGLE_LIMIT, ANGLE_LIMIT);
+        let [angle, _] = Self::pair(Two::all(angle));
+        angle
+    }
+
+    /// Two angles at once.
+    #[inline(always)]
+    pub(crate) fn pair(angles: Two) -> [Self; 2] {
+        let (limit, all) = (Two::all(ANGLE_LIMIT), Two::all);
+        let x = angles.at_least(all(-ANGLE_LIMIT)).at_most(limit);
         let t = x * x;
         // sin x = x - x^3/3! + x^5/5! - x^7/7! + x^9/9!
-        let sin = x + x * (t * (-1.0 / 6.0 + t * (1.0 / 120.0 + t * (-1.0 / 5040.0 + t * (1.0 / 362_880.0)))));
+        let tail = t * (all(-1.0 / 5040.0) + t * all(1.0 / 362_880.0));
+        let sin = x + x * (t * (all(-1.0 / 6.0) + t * (all(1.0 / 120.0) + tail)));
         // 1 - cos x = x^2/2! - x^4/4! + x^6/6! - x^8/8! + x^10/10!
-        let versine =
-            t * (0.5 + t * (-1.0 / 24.0 + t * (1.0 / 720.0 + t * (-1.0 / 40_320.0 + t * (1.0 / 3_628_800.0)))));
-        Self { value: x, sin, cos: 1.0 - versine, versine, limited: angle.abs() > ANGLE_LIMIT }
+        let tail = t * (all(-1.0 / 40_320.0) + t * all(1.0 / 3_628_800.0));
+        let versine = t * (all(0.5) + t * (all(-1.0 / 24.0) + t * (all(1.0 / 720.0) + tail)));
+        let cos = all(1.0) - versine;
+        let limited = x.differs(angles).bits();
+        let ([x0, x1], [s0, s1], [c0, c1]) = (x.numbers(), sin.numbers(), cos.numbers());
+        let [v0, v1] = versine.numbers();
+        [
+            Self { value: x0, sin: s0, cos: c0, versine: v0, limited: limited & 1 != 0 },
+            Self { value: x1, sin: s1, cos: c1, versine: v1, limited: limited & 2 != 0 },
+        ]
     }
 }
 
-/// Square root, correctly rounded on every target; negative arguments count as zero.
-#[inline]
-pub(crate) fn sqrt(x: f32) -> f32 {
-    libm::sqrtf(x.max(0.0))
+/// The greater of a number and a bound: one instruction where `f64::max` takes several for NaN, which gives the bound.
+#[inline(always)]
+pub(crate) fn at_least(x: f64, bound: f64) -> f64 {
+    if x > bound { x } else { bound }
+}
+
+/// The lesser of a number and a bound.
+#[inline(always)]
+pub(crate) fn at_most(x: f64, bound: f64) -> f64 {
+    if x < bound { x } else { bound }
 }
 
 /// Rounds to `f32`, for results that need no more.

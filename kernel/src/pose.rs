@@ -1,5 +1,7 @@
 //! Poses of the wheelset, the two sides, and the mirror that maps every case to the right wheel with yaw >= 0.
 
+use crate::math::Two;
+
 /// Largest magnitude of a pose's coordinate that is taken as a number, m or rad: beyond it, as for NaN and
 /// infinity, the lookup answers no contact and [`Flags::INVALID_INPUT`](crate::Flags::INVALID_INPUT).
 pub const POSE_LIMIT: f64 = 1000.0;
@@ -37,10 +39,7 @@ impl Side {
     #[inline]
     #[must_use]
     pub const fn sign(self) -> f64 {
-        match self {
-            Self::Right => 1.0,
-            Self::Left => -1.0,
-        }
+        1.0 - 2.0 * (self as u8 as f64)
     }
 }
 
@@ -101,9 +100,22 @@ impl Pose {
                 roll: lateral_sign * self.roll,
             },
             lateral_sign,
-            longitudinal_sign: if yaw < 0.0 { -1.0 } else { 1.0 },
+            // The sum makes -0 positive.
+            longitudinal_sign: 1.0_f64.copysign(yaw + 0.0),
         }
     }
+}
+
+/// A pose as its canonical case sees it and whether it is valid; an invalid pose is taken as pose zero, so that it costs
+/// the same.
+#[inline(always)]
+pub(crate) fn checked(pose: &Pose, side: Side) -> (Canonical, bool) {
+    let limit = Two::all(POSE_LIMIT);
+    let (plane, section) = (Two::new([pose.lateral, pose.yaw]), Two::new([pose.vertical, pose.roll]));
+    // A comparison with NaN does not hold.
+    let valid = plane.abs().within(limit).and(section.abs().within(limit));
+    let ([lateral, yaw], [vertical, roll]) = (plane.where_all(valid).numbers(), section.where_all(valid).numbers());
+    (Pose { lateral, yaw, vertical, roll }.canonical(side), valid.bits() == 3)
 }
 
 #[cfg(test)]

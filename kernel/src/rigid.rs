@@ -1,7 +1,8 @@
 //! The rigid maps: where the wheelset touches both rails without indentation, by interpolation.
 
-use crate::axis::{Axis, Place};
+use crate::axis::{Axis, AxisPair, index, pair};
 use crate::displacement::{Displacement, pose_with};
+use crate::math::Two;
 use crate::pose::{Pose, WheelGeometry};
 
 /// Coordinates of a canonical pose in the table.
@@ -22,22 +23,42 @@ pub struct Coordinates {
 #[derive(Clone, Copy)]
 pub struct RigidMaps<'a> {
     lateral: Axis<'a>,
-    yaw: Axis<'a>,
+    plane: AxisPair<'a>,
     roll_offset: Axis<'a>,
+    /// Values of the vertical map from one yaw and from one lateral node to the next, of the roll map from one lateral
+    /// node to the next.
+    row: u32,
+    slab: u32,
+    roll_row: u32,
     roll: &'a [[u8; 4]],
     vertical: &'a [[u8; 4]],
 }
 
 impl core::fmt::Debug for RigidMaps<'_> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.debug_tuple("RigidMaps").field(&self.lateral).field(&self.yaw).field(&self.roll_offset).finish()
+        f.debug_tuple("RigidMaps").field(&self.lateral).field(&self.roll_offset).finish_non_exhaustive()
     }
 }
 
 /// a + t (b - a)
-#[inline]
+#[inline(always)]
 fn lerp(a: f64, b: f64, t: f64) -> f64 {
     a + t * (b - a)
+}
+
+/// [`lerp`] of two.
+#[inline(always)]
+fn lerp2(a: Two, b: Two, t: f64) -> Two {
+    a + Two::all(t) * (b - a)
+}
+
+/// A cell of the maps and the fractions in it.
+#[derive(Clone, Copy)]
+struct InPlane {
+    lateral: u32,
+    yaw: u32,
+    u: f64,
+    psi: f64,
 }
 
 impl<'a> RigidMaps<'a> {
@@ -53,45 +74,53 @@ impl<'a> RigidMaps<'a> {
     ) -> Option<Self> {
         let plane = lateral.len().checked_mul(yaw.len())?;
         let fits = roll.len() == plane && vertical.len() == plane.checked_mul(roll_offset.len())?;
-        fits.then_some(Self { lateral, yaw, roll_offset, roll, vertical })
+        fits.then_some(Self {
+            lateral,
+            plane: AxisPair::new([lateral, yaw]),
+            roll_offset,
+            row: u32::try_from(roll_offset.len()).ok()?,
+            slab: u32::try_from(yaw.len().checked_mul(roll_offset.len())?).ok()?,
+            roll_row: u32::try_from(yaw.len()).ok()?,
+            roll,
+            vertical,
+        })
     }
 
-    #[inline]
-    fn at(map: &[[u8; 4]], index: usize) -> f64 {
-        f64::from(f32::from_le_bytes(map.get(index).copied().unwrap_or_default()))
+    #[inline(always)]
+    fn in_plane(&self, lateral: f64, yaw: f64) -> InPlane {
+        let places = self.plane.locate(Two::new([lateral, yaw]));
+        let ([lateral, yaw], [u, psi]) = (places.cells, places.fraction.numbers());
+        InPlane { lateral, yaw, u, psi }
     }
 
-    #[inline]
-    fn roll_at(&self, u: &Place, yaw: &Place) -> f64 {
-        let row = |i: usize| {
-            let base = i * self.yaw.len() + yaw.cell;
-            lerp(Self::at(self.roll, base), Self::at(self.roll, base + 1), yaw.fraction)
-        };
-        lerp(row(u.cell), row(u.cell + 1), u.fraction)
+    #[inline(always)]
+    fn roll_at(&self, at: InPlane) -> f64 {
+        let base = at.lateral * self.roll_row + at.yaw;
+        let [a, b] = lerp2(pair(self.roll, base), pair(self.roll, base + self.roll_row), at.u).numbers();
+        lerp(a, b, at.psi)
     }
 
-    #[inline]
-    fn vertical_at(&self, u: &Place, yaw: &Place, roll: &Place) -> f64 {
-        let edge = |i: usize, j: usize| {
-            let base = (i * self.yaw.len() + j) * self.roll_offset.len() + roll.cell;
-            lerp(Self::at(self.vertical, base), Self::at(self.vertical, base + 1), roll.fraction)
-        };
-        let face = |i: usize| lerp(edge(i, yaw.cell), edge(i, yaw.cell + 1), yaw.fraction);
-        lerp(face(u.cell), face(u.cell + 1), u.fraction)
+    #[inline(always)]
+    fn vertical_at(&self, at: InPlane, roll_offset: f64) -> f64 {
+        let roll = self.roll_offset.locate(roll_offset);
+        let base = at.lateral * self.slab + at.yaw * self.row + index(roll.cell);
+        let along = |base| lerp2(pair(self.vertical, base), pair(self.vertical, base + self.slab), at.u);
+        let [a, b] = lerp2(along(base), along(base + self.row), at.psi).numbers();
+        lerp(a, b, roll.fraction)
     }
 
     /// Roll at which both wheels touch, rad, bilinear in (u, yaw), clamped to the map.
     #[inline]
     #[must_use]
     pub fn roll(&self, lateral: f64, yaw: f64) -> f64 {
-        self.roll_at(&self.lateral.locate(lateral), &self.yaw.locate(yaw))
+        self.roll_at(self.in_plane(lateral, yaw))
     }
 
     /// Vertical displacement w at which this wheel touches, m, trilinear in (u, yaw, roll offset), clamped to the map.
     #[inline]
     #[must_use]
     pub fn vertical(&self, lateral: f64, yaw: f64, roll_offset: f64) -> f64 {
-        self.vertical_at(&self.lateral.locate(lateral), &self.yaw.locate(yaw), &self.roll_offset.locate(roll_offset))
+        self.vertical_at(self.in_plane(lateral, yaw), roll_offset)
     }
 
     /// Table coordinates of a displacement, yaw >= 0 and roll:
@@ -100,13 +129,12 @@ impl<'a> RigidMaps<'a> {
     /// roll offset = roll - roll_rigid(u, yaw)
     /// ζ           = w - w_rigid(u, yaw, roll offset)
     /// ```
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn coordinates(&self, displacement: &Displacement, yaw: f64, roll: f64) -> Coordinates {
-        let lateral = self.lateral.locate(displacement.lateral);
-        let at_yaw = self.yaw.locate(yaw);
-        let roll_offset = roll - self.roll_at(&lateral, &at_yaw);
-        let rigid = self.vertical_at(&lateral, &at_yaw, &self.roll_offset.locate(roll_offset));
+        let at = self.in_plane(displacement.lateral, yaw);
+        let roll_offset = roll - self.roll_at(at);
+        let rigid = self.vertical_at(at, roll_offset);
         Coordinates { lateral: displacement.lateral, yaw, roll_offset, vertical: displacement.vertical - rigid }
     }
 

@@ -3,17 +3,18 @@
 use core::fmt;
 use core::hint::black_box;
 
-use crate::axis::{Axis, AxisName};
-use crate::blend::{Cell, blend, record};
-use crate::channel::{CHANNELS, CONFORMAL_LANE, Channel, LANES, SLOTS, Scale, Slot};
+use crate::axis::{Axis, AxisName, AxisPair};
+use crate::blend::{Cell, LaneScales, Lanes, edge};
+use crate::channel::{CHANNELS, CONFORMAL_LANE, Channel, LANES, SLOTS, Slot};
 use crate::check;
-use crate::contact::{Contacts, Frame, rebuild, select};
+use crate::contact::{Contacts, Frame, Wheel};
 use crate::displacement::{Attitude, Displacement, displacement};
 use crate::error::TableError;
 use crate::flags::Flags;
 use crate::header::{Header, SideHeader};
 use crate::layout::{RECORD, Sections};
-use crate::pose::{Canonical, Pose, Side, WheelGeometry};
+use crate::math::Two;
+use crate::pose::{Canonical, Pose, Side, WheelGeometry, checked};
 use crate::rigid::{Coordinates, RigidMaps};
 
 /// A contact table, read in place from a borrowed image.
@@ -21,6 +22,11 @@ use crate::rigid::{Coordinates, RigidMaps};
 pub struct ContactTable<'a> {
     header: Header<'a>,
     axes: [Axis<'a>; 7],
+    /// The records' axes lateral and yaw, roll offset and vertical.
+    plane: AxisPair<'a>,
+    section: AxisPair<'a>,
+    /// Records from one node to the next along lateral, yaw and roll offset.
+    strides: [u32; 3],
     right: SideData<'a>,
     left: SideData<'a>,
 }
@@ -29,10 +35,10 @@ pub struct ContactTable<'a> {
 #[derive(Clone)]
 struct SideData<'a> {
     geometry: WheelGeometry,
+    wheel: Wheel,
     rigid: RigidMaps<'a>,
     records: &'a [[u8; RECORD]],
-    offsets: [f32; LANES],
-    steps: [f32; LANES],
+    scales: LaneScales,
 }
 
 /// Where a pose lies in the table.
@@ -43,6 +49,16 @@ struct Located {
     displacement: Displacement,
     coordinates: Coordinates,
 }
+
+/// A lookup before its records are read.
+struct Prepared {
+    located: Located,
+    cell: Cell,
+    flags: Flags,
+}
+
+/// Wheels whose records [`ContactTable::contacts_many`] asks for together.
+const TOGETHER: usize = 8;
 
 impl<'a> ContactTable<'a> {
     /// Checks an image and takes it as a table. The image is read through once (checksum and plausibility of every
@@ -76,7 +92,12 @@ impl<'a> ContactTable<'a> {
             Some(left) => side(left, left_sections)?,
             None => right.clone(),
         };
-        Ok(Self { header, axes, right, left })
+        let [lateral, yaw, roll, vertical, ..] = &axes;
+        let strides = [yaw.len() * roll.len() * vertical.len(), roll.len() * vertical.len(), vertical.len()];
+        // Sections are below 4 GiB, so strides of records fit.
+        let strides = strides.map(|stride| u32::try_from(stride).unwrap_or_default());
+        let (plane, section) = (AxisPair::new([*lateral, *yaw]), AxisPair::new([*roll, *vertical]));
+        Ok(Self { header, axes, plane, section, strides, right, left })
     }
 
     /// The header.
@@ -138,48 +159,90 @@ impl<'a> ContactTable<'a> {
     #[must_use]
     pub fn channels(&self, side: Side, at: &Coordinates) -> [[f32; CHANNELS]; SLOTS] {
         let side = self.side(side);
-        slots(&side.scaled(&self.cell(at).0)).0
+        let mut lanes = Lanes::ZERO;
+        side.blend(&self.cell(at).0, &mut lanes);
+        slots(&lanes)
     }
 
-    /// Brings the records of a pose into the cache by reading one byte of each of the sixteen.
-    ///
-    /// Safe Rust has no prefetch instruction. A core that runs on past outstanding loads overlaps the sixteen with each
-    /// other and with what follows; an in-order core waits for each, and then a lookup alone is the better choice.
+    /// Asks for the sixteen records of a pose, so that they are in the cache when the lookup comes, while the caller
+    /// does other work. Where the target has no prefetch instruction that Rust can name, one byte of each is read; an
+    /// in-order core waits for that, and then a lookup alone is the better choice.
     #[inline]
     pub fn prefetch(&self, side: Side, pose: &Pose) {
-        let (cell, _) = self.cell(&self.locate(side, pose).coordinates);
+        self.prefetch_cell(side, &self.prepare(side, pose).cell);
+    }
+
+    #[inline(always)]
+    fn prefetch_cell(&self, side: Side, cell: &Cell) {
         let records = self.side(side).records;
-        for edge in cell.edges {
-            for index in [edge, edge + 1] {
-                black_box(record(records, index).first().copied());
+        for index in cell.edges {
+            for record in edge(records, index) {
+                prefetch(record);
             }
         }
     }
 
     /// Contacts of a wheel: at most one a slot, those that carry force.
+    #[inline]
     #[must_use]
     pub fn contacts(&self, side: Side, pose: &Pose) -> Contacts {
-        let data = self.side(side);
+        let mut contacts = Contacts::NONE;
+        self.contacts_into(side, pose, &mut contacts);
+        contacts
+    }
+
+    /// [`ContactTable::contacts`] into a place of the caller's, which saves a copy.
+    pub fn contacts_into(&self, side: Side, pose: &Pose, contacts: &mut Contacts) {
+        self.finish(side, &self.prepare(side, pose), contacts);
+    }
+
+    /// Contacts of several wheels, as [`ContactTable::contacts`] gives them: the records of up to eight wheels are
+    /// asked for before the first is blended. Fills as many places as there are wheels and places for.
+    pub fn contacts_many(&self, wheels: &[(Side, Pose)], contacts: &mut [Contacts]) {
+        for (wheels, contacts) in wheels.chunks(TOGETHER).zip(contacts.chunks_mut(TOGETHER)) {
+            let mut prepared = heapless::Vec::<_, TOGETHER>::new();
+            for (side, pose) in wheels {
+                let one = self.prepare(*side, pose);
+                self.prefetch_cell(*side, &one.cell);
+                // There is room for a chunk.
+                let _ = prepared.push((*side, one));
+            }
+            for ((side, one), contacts) in prepared.iter().zip(contacts) {
+                self.finish(*side, one, contacts);
+            }
+        }
+    }
+
+    /// All of a lookup before the records are read.
+    #[inline(always)]
+    fn prepare(&self, side: Side, pose: &Pose) -> Prepared {
         let located = self.locate(side, pose);
-        let (cell, mut flags) = self.cell(&located.coordinates);
-        let (channels, conformal) = slots(&data.scaled(&cell));
+        let (cell, flags) = self.cell(&located.coordinates);
+        Prepared { located, cell, flags }
+    }
+
+    /// The rest of it.
+    #[inline(always)]
+    fn finish(&self, side: Side, prepared: &Prepared, contacts: &mut Contacts) {
+        let data = self.side(side);
+        let Prepared { located, cell, flags } = prepared;
+        // Through memory that the compiler cannot see through: it would interleave the blend's parts with what follows,
+        // and spill more registers than it saves.
+        let mut lanes = Lanes::ZERO;
+        let lanes = black_box(&mut lanes);
+        data.blend(cell, lanes);
         let frame = Frame {
-            geometry: &data.geometry,
+            wheel: &data.wheel,
             canonical: &located.canonical,
             attitude: &located.attitude,
-            displacement: &located.displacement,
+            place: [located.displacement.lateral + data.geometry.lateral_position, located.displacement.vertical],
         };
-        let [tread, root, flange] = &channels;
-        let candidates = [
-            rebuild(Slot::Tread, tread, &frame),
-            rebuild(Slot::FlangeRoot, root, &frame),
-            rebuild(Slot::Flange, flange, &frame),
-        ];
-        let force = candidates.iter().map(|c| c.normal_force).fold(0.0, f32::max);
-        flags |= Flags::ANGLE_LIMITED.when(located.attitude.yaw.limited | located.attitude.roll.limited);
-        flags |= Flags::CONFORMAL.when((conformal > 0.0) & (force > 0.0) & located.valid);
-        flags |= Flags::INVALID_INPUT.when(!located.valid);
-        select(candidates, located.valid, flags)
+        let force = contacts.fill(lanes, &frame, located.valid);
+        let [.., conformal, _] = lanes.0;
+        contacts.flags = *flags
+            | Flags::ANGLE_LIMITED.when(located.attitude.yaw.limited | located.attitude.roll.limited)
+            | Flags::CONFORMAL.when((conformal > 0.0) & force)
+            | Flags::INVALID_INPUT.when(!located.valid);
     }
 
     fn counts(&self) -> [usize; 4] {
@@ -187,30 +250,23 @@ impl<'a> ContactTable<'a> {
         [lateral.len(), yaw.len(), roll.len(), vertical.len()]
     }
 
-    #[inline]
+    #[inline(always)]
     fn locate(&self, side: Side, pose: &Pose) -> Located {
         let data = self.side(side);
-        let valid = pose.is_valid();
-        // An invalid pose takes the same way as any other, from pose zero.
-        let pose = if valid { *pose } else { Pose::default() };
-        let canonical = pose.canonical(side);
+        let (canonical, valid) = checked(pose, side);
         let attitude = Attitude::new(canonical.pose.yaw, canonical.pose.roll);
         let displacement = Displacement::new(&data.geometry, &canonical.pose, &attitude);
         let coordinates = data.rigid.coordinates(&displacement, attitude.yaw.value, attitude.roll.value);
         Located { valid, canonical, attitude, displacement, coordinates }
     }
 
-    #[inline]
+    #[inline(always)]
     fn cell(&self, at: &Coordinates) -> (Cell, Flags) {
-        let [lateral, yaw, roll, vertical, ..] = &self.axes;
-        let places =
-            [lateral.locate(at.lateral), yaw.locate(at.yaw), roll.locate(at.roll_offset), vertical.locate(at.vertical)];
-        let [u, psi, phi, zeta] = &places;
-        let flags = Flags::CLAMPED_LATERAL.when(u.clamped)
-            | Flags::CLAMPED_YAW.when(psi.clamped)
-            | Flags::CLAMPED_ROLL.when(phi.clamped)
-            | Flags::CLAMPED_VERTICAL.when(zeta.clamped);
-        (Cell::new(&places, self.counts()), flags)
+        let plane = self.plane.locate(Two::new([at.lateral, at.yaw]));
+        let section = self.section.locate(Two::new([at.roll_offset, at.vertical]));
+        // The flags of the four axes are the lowest four bits, in the axes' order.
+        let flags = Flags::of_axes(plane.clamped | section.clamped << 2);
+        (Cell::new([&plane, &section], self.strides), flags)
     }
 }
 
@@ -222,36 +278,38 @@ impl fmt::Debug for ContactTable<'_> {
 
 impl<'a> SideData<'a> {
     fn new(header: &SideHeader<'_>, rigid: RigidMaps<'a>, records: &'a [[u8; RECORD]]) -> Self {
-        // Lanes without a scale keep their integers.
-        let (mut offsets, mut steps) = ([0.0; LANES], [1.0; LANES]);
-        let lanes = offsets.iter_mut().zip(steps.iter_mut());
-        for ((offset, step), scale) in lanes.zip(header.scales.as_flattened()) {
-            (*offset, *step) = (scale.offset, scale.step);
-        }
-        Self { geometry: header.geometry, rigid, records, offsets, steps }
+        let scales = LaneScales::new(header.scales.as_flattened());
+        Self { geometry: header.geometry, wheel: Wheel::new(&header.geometry), rigid, records, scales }
     }
 
-    /// Blended lanes in their units.
-    #[inline]
-    fn scaled(&self, cell: &Cell) -> [f32; LANES] {
-        let mut lanes = blend(self.records, cell);
-        for ((lane, offset), step) in lanes.iter_mut().zip(&self.offsets).zip(&self.steps) {
-            *lane = Scale { offset: *offset, step: *step }.value(*lane);
-        }
-        lanes
+    /// Blended lanes in their units, by the vector instructions of the build's target. All give the same bits.
+    #[inline(always)]
+    fn blend(&self, cell: &Cell, lanes: &mut Lanes) {
+        #[cfg(not(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable"))))]
+        crate::blend::portable(self.records, cell, &self.scales, lanes);
+        #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
+        crate::simd::blend(self.records, cell, &self.scales, lanes);
     }
 }
 
-/// The lanes as slots of channels, and the conformal share.
-#[inline]
-fn slots(lanes: &[f32; LANES]) -> ([[f32; CHANNELS]; SLOTS], f32) {
+/// The lanes as slots of channels.
+fn slots(lanes: &Lanes) -> [[f32; CHANNELS]; SLOTS] {
     let mut slots = [[0.0; CHANNELS]; SLOTS];
-    for (channel, lane) in slots.as_flattened_mut().iter_mut().zip(lanes) {
+    for (channel, lane) in slots.as_flattened_mut().iter_mut().zip(&lanes.0) {
         *channel = *lane;
     }
-    let [.., conformal, _] = lanes;
-    (slots, *conformal)
+    slots
 }
 
 // The record is laid out as the lanes are taken apart.
 const _: () = assert!(CONFORMAL_LANE == LANES - 2 && Channel::RailCurvature.lane(Slot::Flange) + 1 == CONFORMAL_LANE);
+
+/// Asks for a record's cache line.
+#[inline(always)]
+fn prefetch(record: &[u8; RECORD]) {
+    #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
+    crate::simd::prefetch(record);
+    // Elsewhere by reading a byte.
+    #[cfg(not(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable"))))]
+    core::hint::black_box(record.first().copied());
+}

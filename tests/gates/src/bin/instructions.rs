@@ -1,0 +1,125 @@
+//! Looks up poses of every kind, each by one call of [`counted`], so that callgrind can count each. Prints a line a
+//! case: its table, name, contacts, flags and a digest of the answer, the same for every build of the kernel.
+
+use std::hint::black_box;
+
+use flangeway::{AxisName, ContactTable, Contacts, Coordinates, Pose, Side};
+
+/// A made-up table in which all three slots can carry force; `tests/kernel_gates.rs` writes it.
+static THREE: &[u8] = include_bytes!("../../three_contacts.fwt");
+
+/// What is looked up.
+struct Case<'a> {
+    table: &'a ContactTable<'static>,
+    label: &'static str,
+    side: Side,
+    pose: Pose,
+    /// False for the floor: the call alone.
+    lookup: bool,
+}
+
+/// The function that is counted.
+#[inline(never)]
+fn counted(case: &Case<'_>, contacts: &mut Contacts) {
+    if case.lookup {
+        case.table.contacts_into(case.side, &case.pose, contacts);
+        if cfg!(feature = "broken") && contacts.total_normal_force() > 0.0 {
+            contacts.list.iter_mut().for_each(|contact| contact.angle = black_box(contact.angle) * 2.0);
+        }
+    }
+    black_box(contacts);
+}
+
+/// Poses of every kind, by fractions of the table's axes.
+fn poses(table: &ContactTable<'_>) -> Vec<(&'static str, Pose)> {
+    let at = |fractions: [f64; 4]| {
+        let on = |name: AxisName, t: f64| {
+            let (first, last) = table.axis(name).range();
+            first + t * (last - first)
+        };
+        let [u, psi, phi, zeta] = fractions;
+        let coordinates = Coordinates {
+            lateral: on(AxisName::Lateral, u),
+            yaw: on(AxisName::Yaw, psi),
+            roll_offset: on(AxisName::RollOffset, phi),
+            vertical: on(AxisName::Vertical, zeta),
+        };
+        table.rigid(Side::Right).pose(&table.header().right.geometry, &coordinates)
+    };
+    let inner = at([0.4, 0.3, 0.6, 0.7]);
+    let mut poses = vec![("zero", Pose::default()), ("backward", Pose { yaw: -inner.yaw, ..inner })];
+    for (label, fractions) in [
+        ("interior", [0.1, 0.2, 0.3, 0.6]),
+        ("interior", [0.5, 0.5, 0.5, 0.5]),
+        ("interior", [0.77, 0.9, 0.2, 0.8]),
+        ("first nodes", [0.0; 4]),
+        ("last nodes", [1.0; 4]),
+        ("edge", [0.0, 0.5, 0.5, 0.5]),
+        ("edge", [1.0, 0.5, 0.5, 0.5]),
+        ("edge", [0.5, 1.0, 0.5, 1.0]),
+        ("clamped lateral", [-0.5, 0.5, 0.5, 0.6]),
+        ("clamped lateral", [1.5, 0.5, 0.5, 0.6]),
+        ("clamped yaw", [0.5, 2.0, 0.5, 0.6]),
+        ("clamped roll", [0.5, 0.5, -3.0, 0.6]),
+        ("clamped all", [-1.0, 2.0, 3.0, 1.2]),
+        ("far below", [0.5, 0.5, 0.5, -50.0]),
+        ("far above", [0.5, 0.5, 0.5, 50.0]),
+        ("no contact", [0.5, 0.5, 0.5, -5.0]),
+        ("many contacts", [0.5, 0.1, 0.5, 2.0]),
+        ("many contacts", [0.95, 0.1, 0.5, 3.0]),
+    ] {
+        poses.push((label, at(fractions)));
+    }
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, 5e-324] {
+        poses.push(("not a number", Pose { lateral: bad, ..inner }));
+        poses.push(("not a number", Pose { yaw: bad, ..inner }));
+        poses.push(("not a number", Pose { vertical: bad, ..inner }));
+        poses.push(("not a number", Pose { roll: bad, ..inner }));
+    }
+    poses.push(("large angles", Pose { yaw: 1.0, roll: -1.0, ..inner }));
+    poses
+}
+
+/// FNV-1a over the bits of every number of an answer.
+fn digest(contacts: &Contacts) -> u64 {
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut add = |word: u32| hash = (hash ^ u64::from(word)).wrapping_mul(0x0100_0000_01b3);
+    add(u32::from(contacts.flags.bits()));
+    for c in contacts {
+        let [x, y, z] = c.position.into();
+        let [a, b] = c.semi_axes;
+        let numbers = [c.normal_force, c.indentation, x, y, z, c.angle, c.rolling_radius, c.wheel_coordinate, a, b];
+        numbers.iter().chain(&[c.wheel_curvature, c.rail_curvature]).for_each(|number| add(number.to_bits()));
+        add(c.slot.index() as u32);
+    }
+    hash
+}
+
+fn main() {
+    let images = [("s1002_60e1_40", flangeway_tables::S1002_60E1_40_TABLE), ("three", THREE)];
+    let tables = images.map(|(name, image)| (name, ContactTable::new(image).expect("a table")));
+    let mut cases = Vec::new();
+    for (_, table) in &tables {
+        // Twice: what happens before the loop belongs to the first.
+        for _ in 0..2 {
+            let floor = Case { table, label: "floor", side: Side::Right, pose: Pose::default(), lookup: false };
+            cases.push((floor, Contacts::NONE));
+        }
+        for (label, pose) in poses(table) {
+            for side in Side::ALL {
+                cases.push((Case { table, label, side, pose, lookup: true }, Contacts::NONE));
+            }
+        }
+    }
+    // Whatever happens once, happens here.
+    let mut first = Contacts::NONE;
+    counted(&cases[2].0, &mut first);
+    for (case, contacts) in &mut cases {
+        counted(black_box(case), black_box(contacts));
+    }
+    for (case, contacts) in &cases {
+        let name = tables.iter().find(|(_, table)| std::ptr::eq(table, case.table)).map_or("", |(name, _)| name);
+        let (count, flags, digest) = (contacts.list.len(), contacts.flags.bits(), digest(contacts));
+        println!("{name}\t{}\t{}\t{count}\t{flags:02x}\t{digest:016x}", case.label, case.side);
+    }
+}
