@@ -17,7 +17,7 @@ use crate::verify::{LOADS, stream};
 const COLUMNS: usize = 2;
 const MORE_COLUMNS: usize = 4;
 /// Relative force error of the sampled values from which on a cell needs more.
-const ROUGH: f64 = 0.05;
+const ROUGH: f64 = 0.02;
 /// Heights in a column, log-uniform from this share of the highest node to this many times it: at constant C the
 /// load is then log-uniform too, as `verify` draws it.
 const HEIGHTS: usize = 10;
