@@ -19,11 +19,11 @@ fn every_byte_of_a_tiny_image() {
     let tiny = Synthetic::new(smallest_axes(), 1);
     let image = tiny.image();
     // Prelude.
-    assert_eq!(image[..12], [b'F', b'W', b'T', b'1', 1, 0, 0, 0, 0xc0, 0x06, 0, 0]);
-    assert_eq!(image.len(), 0x06c0);
+    assert_eq!(image[..12], [b'F', b'W', b'T', b'1', 1, 0, 0, 0, 0x80, 0x06, 0, 0]);
+    assert_eq!(image.len(), 0x0680);
     let crc = crc32c(image[..12].iter().chain(&image[16..]).copied());
     assert_eq!(image[12..16], crc.to_le_bytes());
-    assert_eq!(image[16..20], [0xd9, 0x01, 0, 0]);
+    assert_eq!(image[16..20], [0xd6, 0x01, 0, 0]);
     // Header, written by hand.
     let mut bytes = image[..20].to_vec();
     bytes.extend(b"\x0fflangeway tests\x04none");
@@ -31,7 +31,8 @@ fn every_byte_of_a_tiny_image() {
     for x in [1.435_f64, 2.1e11, 0.28] {
         bytes.extend(x.to_le_bytes());
     }
-    bytes.extend([2, 1].repeat(7)); // nodes and bins of seven axes
+    bytes.extend([2, 1].repeat(4)); // nodes and bins of four axes
+    bytes.extend([1; 3]); // parts of an interval in the rigid maps
     bytes.extend([0, 0]); // samples and seed
     bytes.extend([0; 24]); // six error figures
     bytes.extend(b"\x0dmade-up wheel\x0cmade-up rail");
@@ -46,19 +47,19 @@ fn every_byte_of_a_tiny_image() {
         bytes.extend(scale.step.to_le_bytes());
     }
     bytes.push(0); // no left side
-    assert_eq!(bytes.len(), 20 + 0x01d9);
+    assert_eq!(bytes.len(), 20 + 0x01d6);
     bytes.resize(512, 0);
     // Axes: nodes, then one bin each, which leads to cell 0.
     for node in tiny.axes.concat() {
         bytes.extend(node.to_le_bytes());
     }
-    bytes.extend([0; 14]);
-    bytes.resize(640, 0);
+    bytes.extend([0; 8]);
+    bytes.resize(576, 0);
     // Rigid maps.
     for value in tiny.sides[0].rigid_roll.iter().chain(&tiny.sides[0].rigid_vertical) {
         bytes.extend(value.to_le_bytes());
     }
-    bytes.resize(704, 0);
+    bytes.resize(640, 0);
     for lane in tiny.sides[0].records.as_flattened() {
         bytes.extend(lane.to_le_bytes());
     }
@@ -115,26 +116,28 @@ fn says_what_is_wrong() {
     let message = |at: usize, bytes: &[u8]| ContactTable::new(&forged(&image, at, bytes)).unwrap_err().to_string();
     assert_eq!(message(0, b"\x7fELF"), "not a contact table: it begins with \"\\x7fELF\", not with \"FWT1\"");
     assert_eq!(message(4, &[2]), "table has format version 2, this program reads version 1");
-    assert_eq!(message(16, &[0xff; 4]), "header length is 4294967295 bytes, at most 1708 fit");
-    assert_eq!(message(16, &[0xd8]), "header at byte 20 cannot be read");
-    assert_eq!(message(16, &[0xda]), "header at byte 20 cannot be read");
+    assert_eq!(message(16, &[0xff; 4]), "header length is 4294967295 bytes, at most 1644 fit");
+    assert_eq!(message(16, &[0xd5]), "header at byte 20 cannot be read");
+    assert_eq!(message(16, &[0xd7]), "header at byte 20 cannot be read");
     let gauge = 20 + 16 + 5 + 32;
     assert_eq!(message(gauge, &f64::NAN.to_le_bytes()), "header field gauge is NaN, plausible are 0.1 to 3");
-    assert_eq!(message(gauge + 24, &[3]), "header describes a table of 2240 bytes, this one has 1728");
+    assert_eq!(message(gauge + 24, &[3]), "header describes a table of 2240 bytes, this one has 1664");
     assert_eq!(message(511, &[9]), "padding at byte 511 is 9, not 0");
     let node = "lateral axis: node 1 is NaN, not a number above the node before and within plausible bounds";
     assert_eq!(message(516, &f32::NAN.to_le_bytes()), node);
-    let cover = "rigid yaw axis does not cover the records' axis";
-    assert_eq!(message(512 + 4 * 11, &0.01_f32.to_le_bytes()), cover);
-    assert_eq!(message(512 + 56, &[1, 0]), "lateral axis: bin 0 leads to cell 1, its nodes say otherwise");
+    for parts in [0, 3, 17, 32, 255] {
+        let refinement = format!("rigid maps have {parts} parts in an interval of the yaw axis, not 1, 2, 4, 8 or 16");
+        assert_eq!(message(gauge + 24 + 8 + 1, &[parts]), refinement);
+    }
+    assert_eq!(message(512 + 32, &[1, 0]), "lateral axis: bin 0 leads to cell 1, its nodes say otherwise");
     assert_eq!(
-        message(640, &f32::INFINITY.to_le_bytes()),
-        "rigid map value at byte 640 is inf, plausible are -0.125 to 0.125"
+        message(576, &f32::INFINITY.to_le_bytes()),
+        "rigid map value at byte 576 is inf, plausible are -0.125 to 0.125"
     );
-    assert_eq!(message(656, &2.0_f32.to_le_bytes()), "rigid map value at byte 656 is 2, plausible are -1 to 1");
-    let lane = "record at byte 704 has 1 in lane 31, which allows no such value";
-    assert_eq!(message(704 + 62, &[1, 0]), lane);
-    let first_scale = 20 + 0x01d9 - 1 - 240;
+    assert_eq!(message(592, &2.0_f32.to_le_bytes()), "rigid map value at byte 592 is 2, plausible are -1 to 1");
+    let lane = "record at byte 640 has 1 in lane 31, which allows no such value";
+    assert_eq!(message(640 + 62, &[1, 0]), lane);
+    let first_scale = 20 + 0x01d6 - 1 - 240;
     let scale = "scale of indentation (right tread) has offset 3e-5 and step 0e0: the step must be above zero \
                  and no value beyond 1e-1";
     assert_eq!(message(first_scale + 4, &[0; 4]), scale);

@@ -115,6 +115,24 @@ fn outside_the_indentation_is_extrapolated_and_the_rest_clamped() {
 }
 
 #[test]
+fn rigid_maps_are_clamped() {
+    let (source, image) = image();
+    let table = ContactTable::new(&image).unwrap();
+    let rigid = table.rigid(Side::Right);
+    let inner = inside(&source, [0.3, 0.4, 0.6, 0.5]);
+    for (far, edge) in [(-1.0, 0.0), (1.0, 1.0)] {
+        let edge = inside(&source, [edge; 4]);
+        assert_eq!(rigid.roll(far, inner.yaw), rigid.roll(edge.lateral, inner.yaw));
+        assert_eq!(rigid.roll(inner.lateral, far), rigid.roll(inner.lateral, edge.yaw));
+        let vertical = |u, p, r| rigid.vertical(u, p, r);
+        let (u, p, r) = (inner.lateral, inner.yaw, inner.roll_offset);
+        assert_eq!(vertical(far, p, r), vertical(edge.lateral, p, r));
+        assert_eq!(vertical(u, far, r), vertical(u, edge.yaw, r));
+        assert_eq!(vertical(u, p, far), vertical(u, p, edge.roll_offset));
+    }
+}
+
+#[test]
 fn flags_name_what_was_clamped() {
     let (source, image) = image();
     let table = ContactTable::new(&image).unwrap();

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use flangeway::layout::{
     CHECKSUM_AT, HEADER_AT, HEADER_LENGTH_AT, LENGTH_AT, MAGIC, MAGIC_AT, Sections, SideSections, VERSION, VERSION_AT,
-    checksum,
+    checksum, refined,
 };
 use flangeway::{
     Axis, AxisCounts, AxisName, ContactTable, Header, LANES, MAX_BINS, RigidMaps, Scale, bin_of, bins_per_unit,
@@ -17,10 +17,10 @@ use crate::error::{Error, Result};
 /// Everything a table image is made of.
 #[derive(Debug, Clone, Copy)]
 pub struct ImageParts<'a> {
-    /// The header; its axis counts are filled in by [`write_image`].
+    /// The header, with the rigid maps' refinement; its axis counts are filled in by [`write_image`].
     pub header: Header<'a>,
-    /// Nodes of the seven axes in the order of [`AxisName::ALL`], m or rad.
-    pub axes: [&'a [f32]; 7],
+    /// Nodes of the four axes in the order of [`AxisName::ALL`], m or rad.
+    pub axes: [&'a [f32]; 4],
     /// Data of the right side.
     pub right: SideParts<'a>,
     /// Data of the left side, where the header has one.
@@ -30,11 +30,11 @@ pub struct ImageParts<'a> {
 /// Data of one side.
 #[derive(Debug, Clone, Copy)]
 pub struct SideParts<'a> {
-    /// Rigid roll, `[lateral][yaw]` over the rigid axes, rad.
+    /// Rigid roll, `[lateral][yaw]` over the refined axes, rad.
     pub rigid_roll: &'a [f32],
-    /// Rigid vertical displacement, `[lateral][yaw][roll offset]` over the rigid axes, m.
+    /// Rigid vertical displacement, `[lateral][yaw][roll offset]` over the refined axes, m.
     pub rigid_vertical: &'a [f32],
-    /// Records, `[lateral][yaw][roll offset][vertical]` over the records' axes.
+    /// Records, `[lateral][yaw][roll offset][vertical]` over the axes.
     pub records: &'a [[i16; LANES]],
 }
 
@@ -109,40 +109,40 @@ fn bin_map(nodes: &[f32]) -> Option<Vec<u16>> {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OwnedRigidMaps {
     axes: [OwnedAxis; 3],
+    refinement: [u8; 3],
     roll: Vec<[u8; 4]>,
     vertical: Vec<[u8; 4]>,
 }
 
 impl OwnedRigidMaps {
-    /// Maps over axes (lateral, yaw, roll offset): `roll[lateral][yaw]`, rad, and `vertical[lateral][yaw][roll offset]`,
-    /// m.
+    /// Maps over the records' axes (lateral, yaw, roll offset) with every interval divided into so many parts:
+    /// `roll[lateral][yaw]`, rad, and `vertical[lateral][yaw][roll offset]`, m.
     ///
     /// # Errors
     /// Bad axes, or maps whose lengths do not fit them.
-    pub fn new(axes: [&[f32]; 3], roll: &[f32], vertical: &[f32]) -> Result<Self> {
+    pub fn new(axes: [&[f32]; 3], refinement: [u8; 3], roll: &[f32], vertical: &[f32]) -> Result<Self> {
         let [lateral, yaw, roll_offset] = axes;
         let maps = Self {
             axes: [
-                OwnedAxis::new(AxisName::RigidLateral, lateral)?,
-                OwnedAxis::new(AxisName::RigidYaw, yaw)?,
-                OwnedAxis::new(AxisName::RigidRollOffset, roll_offset)?,
+                OwnedAxis::new(AxisName::Lateral, lateral)?,
+                OwnedAxis::new(AxisName::Yaw, yaw)?,
+                OwnedAxis::new(AxisName::RollOffset, roll_offset)?,
             ],
+            refinement,
             roll: roll.iter().map(|x| x.to_le_bytes()).collect(),
             vertical: vertical.iter().map(|x| x.to_le_bytes()).collect(),
         };
+        let [l, y, r] = refinement;
+        let plane = refined(lateral.len(), l) * refined(yaw.len(), y);
+        let needed = plane * (1 + refined(roll_offset.len(), r));
         match maps.try_view() {
             Some(_) => Ok(maps),
-            None => Err(lengths(
-                "rigid maps",
-                roll.len() + vertical.len(),
-                lateral.len() * yaw.len() * (1 + roll_offset.len()),
-            )),
+            None => Err(lengths("rigid maps", roll.len() + vertical.len(), needed)),
         }
     }
 
     fn try_view(&self) -> Option<RigidMaps<'_>> {
-        let [lateral, yaw, roll_offset] = &self.axes;
-        RigidMaps::new(lateral.view(), yaw.view(), roll_offset.view(), &self.roll, &self.vertical)
+        RigidMaps::new(self.axes.each_ref().map(OwnedAxis::view), self.refinement, &self.roll, &self.vertical)
     }
 
     /// The kernel's view of these maps.
@@ -177,7 +177,7 @@ pub fn write_image(parts: &ImageParts<'_>) -> Result<Vec<u8>> {
     }
     let header_bytes =
         postcard::to_allocvec(&header).map_err(|e| Error::field("", "header", format!("cannot be encoded: {e}")))?;
-    let sections = Sections::new(header_bytes.len(), &header.axes, header.sides())
+    let sections = Sections::new(header_bytes.len(), &header.axes, header.refinement, header.sides())
         .ok_or_else(|| Error::field("", "axes", "the table would be larger than 4 GiB"))?;
     let mut image = vec![0; sections.total];
     let number = |n: usize| u32::try_from(n).unwrap_or(u32::MAX).to_le_bytes();

@@ -11,36 +11,22 @@ pub const MAX_BINS: usize = 4096;
 /// Largest distance outside its cell, in cell widths, that a coordinate is extrapolated over.
 const EXTRAPOLATION_LIMIT: f64 = 1024.0;
 
-/// The seven axes of a table.
+/// The four axes of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum AxisName {
-    /// Records: lateral displacement u, m.
+    /// Lateral displacement u, m.
     Lateral,
-    /// Records: magnitude of yaw, rad.
+    /// Magnitude of yaw, rad.
     Yaw,
-    /// Records: roll less the rigid roll, rad.
+    /// Roll less the rigid roll, rad.
     RollOffset,
-    /// Records: vertical displacement less the rigid one, zeta, m.
+    /// Vertical displacement less the rigid one, zeta, m.
     Vertical,
-    /// Rigid maps: lateral displacement u, m.
-    RigidLateral,
-    /// Rigid maps: magnitude of yaw, rad.
-    RigidYaw,
-    /// Rigid maps: roll less the rigid roll, rad.
-    RigidRollOffset,
 }
 
 impl AxisName {
     /// All axes in the order of the image.
-    pub const ALL: [Self; 7] = [
-        Self::Lateral,
-        Self::Yaw,
-        Self::RollOffset,
-        Self::Vertical,
-        Self::RigidLateral,
-        Self::RigidYaw,
-        Self::RigidRollOffset,
-    ];
+    pub const ALL: [Self; 4] = [Self::Lateral, Self::Yaw, Self::RollOffset, Self::Vertical];
 
     /// Position in [`AxisName::ALL`].
     #[inline]
@@ -53,9 +39,9 @@ impl AxisName {
     #[must_use]
     pub const fn bounds(self) -> (f32, f32) {
         match self {
-            Self::Lateral | Self::RigidLateral => (-1.0, 1.0),
-            Self::Yaw | Self::RigidYaw => (0.0, 0.125),
-            Self::RollOffset | Self::RigidRollOffset => (-0.125, 0.125),
+            Self::Lateral => (-1.0, 1.0),
+            Self::Yaw => (0.0, 0.125),
+            Self::RollOffset => (-0.125, 0.125),
             Self::Vertical => (-0.1, 0.1),
         }
     }
@@ -68,9 +54,6 @@ impl fmt::Display for AxisName {
             Self::Yaw => "yaw",
             Self::RollOffset => "roll offset",
             Self::Vertical => "vertical",
-            Self::RigidLateral => "rigid lateral",
-            Self::RigidYaw => "rigid yaw",
-            Self::RigidRollOffset => "rigid roll offset",
         })
     }
 }
@@ -255,7 +238,6 @@ pub(crate) fn index(cell: usize) -> u32 {
 pub(crate) struct Places {
     pub(crate) cells: [u32; 2],
     pub(crate) fraction: Two,
-    pub(crate) unclamped: Two,
     /// Bit i says whether coordinate i lies outside its axis.
     pub(crate) clamped: u8,
 }
@@ -291,12 +273,7 @@ impl<'a> AxisPair<'a> {
         let [lower, upper] = Two::transpose([pair(a.nodes, cell_a), pair(b.nodes, cell_b)]);
         let unclamped = (x - lower) / (upper - lower);
         let fraction = unclamped.at_least(Two::all(0.0)).at_most(Two::all(1.0));
-        Places {
-            cells: [cell_a, cell_b],
-            fraction,
-            unclamped: unclamped.at_least(Two::all(-EXTRAPOLATION_LIMIT)).at_most(Two::all(EXTRAPOLATION_LIMIT)),
-            clamped: fraction.differs(unclamped).bits(),
-        }
+        Places { cells: [cell_a, cell_b], fraction, clamped: fraction.differs(unclamped).bits() }
     }
 }
 

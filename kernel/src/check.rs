@@ -6,7 +6,7 @@ use core::ops::Range;
 use crate::axis::{Axis, AxisName};
 use crate::channel::{CONFORMAL_LANE, Channel, LANES, RESERVED_LANE, Slot};
 use crate::error::TableError;
-use crate::header::{Header, SideHeader};
+use crate::header::{Header, MAX_PARTS, SideHeader};
 use crate::layout::{
     CHECKSUM_AT, HEADER_AT, HEADER_LENGTH_AT, HEADER_LIMIT, LENGTH_AT, MAGIC, MAGIC_AT, RECORD, Sections, VERSION,
     VERSION_AT, checksum,
@@ -75,6 +75,11 @@ pub(crate) fn header(bytes: &[u8]) -> Result<Header<'_>, TableError> {
     for (field, value) in figures {
         within(field, None, f64::from(value), 0.0, f64::from(f32::MAX))?;
     }
+    for (axis, parts) in AxisName::ALL.into_iter().zip(header.refinement) {
+        if !parts.is_power_of_two() || parts > MAX_PARTS {
+            return Err(TableError::Refinement { axis, parts });
+        }
+    }
     side(&header.right, Side::Right)?;
     if let Some(left) = &header.left {
         side(left, Side::Left)?;
@@ -116,8 +121,8 @@ fn side(header: &SideHeader<'_>, side: Side) -> Result<(), TableError> {
     Ok(())
 }
 
-/// The seven axes.
-pub(crate) fn axes<'a>(image: &'a [u8], header: &Header<'_>, sections: &Sections) -> Result<[Axis<'a>; 7], TableError> {
+/// The four axes.
+pub(crate) fn axes<'a>(image: &'a [u8], header: &Header<'_>, sections: &Sections) -> Result<[Axis<'a>; 4], TableError> {
     let axis = |name: AxisName| {
         let missing = TableError::Sections { needed: Some(sections.total), length: image.len() };
         let counts = header.axes.get(name.index()).copied().unwrap_or_default();
@@ -128,16 +133,8 @@ pub(crate) fn axes<'a>(image: &'a [u8], header: &Header<'_>, sections: &Sections
         let bins = sections.bins.get(name.index()).ok_or(missing)?;
         Axis::new(name, chunks(image, nodes), chunks(image, bins))
     };
-    let [a, b, c, d, e, f, g] = AxisName::ALL;
-    let all = [axis(a)?, axis(b)?, axis(c)?, axis(d)?, axis(e)?, axis(f)?, axis(g)?];
-    let [lateral, yaw, roll, _, rigid_lateral, rigid_yaw, rigid_roll] = &all;
-    for (name, rigid, record) in [(e, rigid_lateral, lateral), (f, rigid_yaw, yaw), (g, rigid_roll, roll)] {
-        let (rigid, record) = (rigid.range(), record.range());
-        if rigid.0 > record.0 || rigid.1 < record.1 {
-            return Err(TableError::AxisCover { axis: name });
-        }
-    }
-    Ok(all)
+    let [a, b, c, d] = AxisName::ALL;
+    Ok([axis(a)?, axis(b)?, axis(c)?, axis(d)?])
 }
 
 /// A section as elements of `N` bytes.

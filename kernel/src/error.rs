@@ -124,10 +124,12 @@ pub enum TableError {
         /// The cell it leads to.
         found: u16,
     },
-    /// An axis of the rigid maps does not cover the records' axis of the same coordinate.
-    AxisCover {
-        /// The rigid maps' axis.
+    /// The rigid maps divide an axis' intervals into other than 1, 2, 4, 8 or 16 parts.
+    Refinement {
+        /// The axis.
         axis: AxisName,
+        /// Parts of an interval.
+        parts: u8,
     },
     /// A value of a rigid map is not a number or not plausible.
     RigidValue {
@@ -210,7 +212,9 @@ impl fmt::Display for TableError {
             Self::AxisBin { axis, index, found } => {
                 write!(f, "{axis} axis: bin {index} leads to cell {found}, its nodes say otherwise")
             }
-            Self::AxisCover { axis } => write!(f, "{axis} axis does not cover the records' axis"),
+            Self::Refinement { axis, parts } => {
+                write!(f, "rigid maps have {parts} parts in an interval of the {axis} axis, not 1, 2, 4, 8 or 16")
+            }
             Self::RigidValue { offset, value, limit } => {
                 write!(f, "rigid map value at byte {offset} is {value}, plausible are -{limit} to {limit}")
             }

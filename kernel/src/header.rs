@@ -14,6 +14,9 @@ pub struct AxisCounts {
     pub bins: u16,
 }
 
+/// Most parts that the rigid maps can divide an interval of an axis into.
+pub const MAX_PARTS: u8 = 16;
+
 /// Elastic constants of wheel and rail (the same for both).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Material {
@@ -82,8 +85,11 @@ pub struct Header<'a> {
     pub gauge: f64,
     /// Material of wheels and rails.
     pub material: Material,
-    /// Counts of the seven axes in the order of [`AxisName::ALL`](crate::AxisName::ALL).
-    pub axes: [AxisCounts; 7],
+    /// Counts of the four axes in the order of [`AxisName::ALL`](crate::AxisName::ALL).
+    pub axes: [AxisCounts; 4],
+    /// Parts that the rigid maps divide each interval of the lateral, yaw and roll offset axis into: a power of two,
+    /// at most [`MAX_PARTS`].
+    pub refinement: [u8; 3],
     /// Measured errors.
     pub errors: ErrorFigures,
     /// The right side.

@@ -169,6 +169,14 @@ impl Two {
         self.0.map(|x| x as u32 as usize)
     }
 
+    /// The integer parts of numbers from 0 to 2^31, and the same as `f64`.
+    #[inline(always)]
+    pub(crate) fn integer_parts(self) -> ([u32; 2], Self) {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the cast saturates")]
+        let parts = self.0.map(|x| x as u32);
+        (parts, Self(parts.map(f64::from)))
+    }
+
     /// Rows as columns.
     #[inline(always)]
     pub(crate) fn transpose([a, b]: [Self; 2]) -> [Self; 2] {
@@ -265,6 +273,8 @@ mod tests {
                 let limited = |x: f64| x.clamp(0.0, 4095.0);
                 let (x, v) = (Two([limited(a), limited(b)]), simd::Two::new([limited(a), limited(b)]));
                 assert_eq!(x.truncate(), v.truncate());
+                let (parts, whole) = (x.integer_parts(), v.integer_parts());
+                assert_eq!((parts.0, parts.1.numbers()), (whole.0, whole.1.numbers()));
                 let numbers = [a, b, 0.5 * a, 3.0].map(single);
                 let (x, v) = (Four(numbers), simd::Four::new(numbers));
                 let (y, w) = (Four::all(single(b)), simd::Four::all(single(b)));

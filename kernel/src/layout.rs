@@ -54,10 +54,10 @@ pub struct SideSections {
 /// All sections of an image, as byte ranges.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Sections {
-    /// `f32` nodes of the seven axes.
-    pub nodes: [Range<usize>; 7],
-    /// `u16` search maps of the seven axes.
-    pub bins: [Range<usize>; 7],
+    /// `f32` nodes of the four axes.
+    pub nodes: [Range<usize>; 4],
+    /// `u16` search maps of the four axes.
+    pub bins: [Range<usize>; 4],
     /// Right and left side.
     pub sides: [SideSections; 2],
     /// Zero bytes that align the sections: before the axes, before each side's rigid maps and its records.
@@ -70,9 +70,9 @@ pub struct Sections {
 struct Cursor(Option<usize>);
 
 impl Cursor {
-    fn take(&mut self, size: usize, counts: &[u16]) -> Range<usize> {
+    fn take(&mut self, size: usize, counts: &[usize]) -> Range<usize> {
         let start = self.0;
-        let bytes = counts.iter().try_fold(size, |product, n| product.checked_mul(usize::from(*n)));
+        let bytes = counts.iter().try_fold(size, |product, n| product.checked_mul(*n));
         self.0 = start
             .zip(bytes)
             .and_then(|(start, bytes)| start.checked_add(bytes))
@@ -88,20 +88,30 @@ impl Cursor {
     }
 }
 
+/// Nodes of an axis whose every interval is divided into so many parts.
+#[must_use]
+pub fn refined(nodes: usize, parts: u8) -> usize {
+    nodes.saturating_sub(1).saturating_mul(usize::from(parts)).saturating_add(1)
+}
+
 impl Sections {
-    /// Sections for a header of this length with these axes and one or two sides; none beyond 4 GiB.
+    /// Sections for a header of this length with these axes, the rigid maps' parts of an interval of the first three,
+    /// and one or two sides; none beyond 4 GiB.
     #[must_use]
-    pub fn new(header_length: usize, axes: &[AxisCounts; 7], sides: usize) -> Option<Self> {
+    pub fn new(header_length: usize, axes: &[AxisCounts; 4], refinement: [u8; 3], sides: usize) -> Option<Self> {
         let mut sections = Self::default();
         let mut cursor = Cursor(HEADER_AT.checked_add(header_length));
-        let [lateral, yaw, roll, vertical, rigid_lateral, rigid_yaw, rigid_roll] = axes.map(|axis| axis.nodes);
+        let [lateral, yaw, roll, vertical] = axes.map(|axis| usize::from(axis.nodes));
+        let [lateral_parts, yaw_parts, roll_parts] = refinement;
+        let (rigid_lateral, rigid_yaw) = (refined(lateral, lateral_parts), refined(yaw, yaw_parts));
+        let rigid_roll = refined(roll, roll_parts);
         let [axes_gap, right_maps_gap, right_records_gap, left_maps_gap, left_records_gap] = &mut sections.padding;
         *axes_gap = cursor.align();
         for (range, axis) in sections.nodes.iter_mut().zip(axes) {
-            *range = cursor.take(size_of::<f32>(), &[axis.nodes]);
+            *range = cursor.take(size_of::<f32>(), &[usize::from(axis.nodes)]);
         }
         for (range, axis) in sections.bins.iter_mut().zip(axes) {
-            *range = cursor.take(size_of::<u16>(), &[axis.bins]);
+            *range = cursor.take(size_of::<u16>(), &[usize::from(axis.bins)]);
         }
         let gaps = [(right_maps_gap, right_records_gap), (left_maps_gap, left_records_gap)];
         for (side, (maps_gap, records_gap)) in sections.sides.iter_mut().zip(gaps).take(sides) {
@@ -120,35 +130,35 @@ impl Sections {
 mod tests {
     use super::*;
 
-    fn counts(n: [u16; 7]) -> [AxisCounts; 7] {
+    fn counts(n: [u16; 4]) -> [AxisCounts; 4] {
         n.map(|nodes| AxisCounts { nodes, bins: 1 })
     }
 
     #[test]
     fn sections_follow_each_other_aligned() {
-        let s = Sections::new(100, &counts([2, 2, 2, 3, 2, 2, 2]), 2).unwrap();
+        let s = Sections::new(100, &counts([2, 2, 2, 3]), [2, 1, 1], 2).unwrap();
         assert_eq!(s.padding[0], 120..128);
         assert_eq!(s.nodes[0], 128..136);
-        assert_eq!(s.nodes[6], 180..188);
-        assert_eq!(s.bins[6], 200..202);
-        assert_eq!(s.padding[1], 202..256);
-        assert_eq!(s.sides[0], SideSections { rigid_roll: 256..272, rigid_vertical: 272..304, records: 320..1856 });
-        assert_eq!(s.sides[1].records, 1920..3456);
-        assert_eq!(s.total, 3456);
-        assert_eq!(Sections::new(100, &counts([2, 2, 2, 3, 2, 2, 2]), 1).unwrap().total, 1856);
+        assert_eq!(s.nodes[3], 152..164);
+        assert_eq!(s.bins[3], 170..172);
+        assert_eq!(s.padding[1], 172..192);
+        assert_eq!(s.sides[0], SideSections { rigid_roll: 192..216, rigid_vertical: 216..264, records: 320..1856 });
+        assert_eq!(s.sides[1].records, 1984..3520);
+        assert_eq!(s.total, 3520);
+        assert_eq!(Sections::new(100, &counts([2, 2, 2, 3]), [2, 1, 1], 1).unwrap().total, 1856);
     }
 
     #[test]
     fn order_of_the_padding() {
-        let s = Sections::new(100, &counts([2, 2, 2, 3, 2, 2, 2]), 2).unwrap();
-        assert_eq!(s.padding, [120..128, 202..256, 304..320, 1856..1856, 1904..1920]);
+        let s = Sections::new(100, &counts([2, 2, 2, 3]), [2, 1, 1], 2).unwrap();
+        assert_eq!(s.padding, [120..128, 172..192, 264..320, 1856..1856, 1928..1984]);
     }
 
     #[test]
     fn no_table_beyond_four_gibibytes() {
-        assert_eq!(Sections::new(100, &counts([4097, 4097, 4097, 4097, 2, 2, 2]), 1), None);
-        assert_eq!(Sections::new(100, &counts([u16::MAX; 7]), 2), None);
-        assert_eq!(Sections::new(usize::MAX, &counts([2; 7]), 1), None);
+        assert_eq!(Sections::new(100, &counts([4097; 4]), [1; 3], 1), None);
+        assert_eq!(Sections::new(100, &counts([u16::MAX; 4]), [16; 3], 2), None);
+        assert_eq!(Sections::new(usize::MAX, &counts([2; 4]), [1; 3], 1), None);
     }
 
     #[test]

@@ -106,7 +106,7 @@ pub use contact::{Contact, Contacts};
 pub use displacement::{Attitude, Displacement, displacement, pose_with};
 pub use error::TableError;
 pub use flags::Flags;
-pub use header::{AxisCounts, ErrorFigures, Header, Material, SideHeader};
+pub use header::{AxisCounts, ErrorFigures, Header, MAX_PARTS, Material, SideHeader};
 pub use math::{ANGLE_LIMIT, Angle};
 pub use pose::{Canonical, POSE_LIMIT, Pose, Side, WheelGeometry};
 pub use rigid::{Coordinates, RigidMaps};

@@ -169,6 +169,16 @@ impl Two {
     }
 
     #[inline(always)]
+    #[expect(clippy::cast_sign_loss, clippy::cast_possible_truncation, reason = "two integers below 2^31")]
+    pub(crate) fn integer_parts(self) -> ([u32; 2], Self) {
+        unsafe {
+            let parts = _mm_cvttpd_epi32(self.0);
+            let both = _mm_cvtsi128_si64(parts) as u64;
+            ([both as u32, (both >> 32) as u32], Self(_mm_cvtepi32_pd(parts)))
+        }
+    }
+
+    #[inline(always)]
     pub(crate) fn transpose([a, b]: [Self; 2]) -> [Self; 2] {
         unsafe { [Self(_mm_unpacklo_pd(a.0, b.0)), Self(_mm_unpackhi_pd(a.0, b.0))] }
     }

@@ -3,7 +3,7 @@
 use core::fmt;
 use core::hint::black_box;
 
-use crate::axis::{Axis, AxisName, AxisPair};
+use crate::axis::{Axis, AxisName, Place, Places};
 use crate::blend::{Cell, LaneScales, Lanes, edge};
 use crate::channel::{CHANNELS, CONFORMAL_LANE, Channel, LANES, SLOTS, Slot};
 use crate::check;
@@ -13,7 +13,6 @@ use crate::error::TableError;
 use crate::flags::Flags;
 use crate::header::{Header, SideHeader};
 use crate::layout::{RECORD, Sections};
-use crate::math::Two;
 use crate::pose::{Canonical, Pose, Side, WheelGeometry, checked};
 use crate::rigid::{Coordinates, RigidMaps};
 
@@ -21,10 +20,7 @@ use crate::rigid::{Coordinates, RigidMaps};
 #[derive(Clone)]
 pub struct ContactTable<'a> {
     header: Header<'a>,
-    axes: [Axis<'a>; 7],
-    /// The records' axes lateral and yaw, roll offset and vertical.
-    plane: AxisPair<'a>,
-    section: AxisPair<'a>,
+    axes: [Axis<'a>; 4],
     /// Records from one node to the next along lateral, yaw and roll offset.
     strides: [u32; 3],
     right: SideData<'a>,
@@ -41,13 +37,16 @@ struct SideData<'a> {
     scales: LaneScales,
 }
 
-/// Where a pose lies in the table.
+/// Where a pose lies in the table: all but its height.
 struct Located {
     valid: bool,
     canonical: Canonical,
     attitude: Attitude,
     displacement: Displacement,
     coordinates: Coordinates,
+    /// The places of the first three coordinates.
+    plane: Places,
+    roll_offset: Place,
 }
 
 /// A lookup before its records are read.
@@ -70,7 +69,7 @@ impl<'a> ContactTable<'a> {
     pub fn new(image: &'a [u8]) -> Result<Self, TableError> {
         let bytes = check::envelope(image)?;
         let header = check::header(bytes)?;
-        let sections = Sections::new(bytes.len(), &header.axes, header.sides());
+        let sections = Sections::new(bytes.len(), &header.axes, header.refinement, header.sides());
         let sections = match sections {
             Some(sections) if sections.total == image.len() => sections,
             other => return Err(TableError::Sections { needed: other.map(|s| s.total), length: image.len() }),
@@ -78,11 +77,12 @@ impl<'a> ContactTable<'a> {
         check::padding(image, &sections)?;
         let axes = check::axes(image, &header, &sections)?;
         let [right_sections, left_sections] = &sections.sides;
+        let refinement = header.refinement;
         let side = |header: &SideHeader<'_>, place: &crate::layout::SideSections| {
-            let [_, _, _, _, lateral, yaw, roll] = axes;
+            let [lateral, yaw, roll, _] = axes;
             let roll_map = check::rigid_roll(image, &place.rigid_roll)?;
             let vertical_map = check::rigid_vertical(image, &place.rigid_vertical)?;
-            let rigid = RigidMaps::new(lateral, yaw, roll, roll_map, vertical_map)
+            let rigid = RigidMaps::new([lateral, yaw, roll], refinement, roll_map, vertical_map)
                 .ok_or(TableError::Sections { needed: Some(sections.total), length: image.len() })?;
             let records = check::records(image, &place.records)?;
             Ok(SideData::new(header, rigid, records))
@@ -92,12 +92,11 @@ impl<'a> ContactTable<'a> {
             Some(left) => side(left, left_sections)?,
             None => right.clone(),
         };
-        let [lateral, yaw, roll, vertical, ..] = &axes;
+        let [_, yaw, roll, vertical] = &axes;
         let strides = [yaw.len() * roll.len() * vertical.len(), roll.len() * vertical.len(), vertical.len()];
         // Sections are below 4 GiB, so strides of records fit.
         let strides = strides.map(|stride| u32::try_from(stride).unwrap_or_default());
-        let (plane, section) = (AxisPair::new([*lateral, *yaw]), AxisPair::new([*roll, *vertical]));
-        Ok(Self { header, axes, plane, section, strides, right, left })
+        Ok(Self { header, axes, strides, right, left })
     }
 
     /// The header.
@@ -109,15 +108,12 @@ impl<'a> ContactTable<'a> {
     /// One of the table's axes.
     #[must_use]
     pub const fn axis(&self, name: AxisName) -> &Axis<'a> {
-        let [lateral, yaw, roll, vertical, rigid_lateral, rigid_yaw, rigid_roll] = &self.axes;
+        let [lateral, yaw, roll, vertical] = &self.axes;
         match name {
             AxisName::Lateral => lateral,
             AxisName::Yaw => yaw,
             AxisName::RollOffset => roll,
             AxisName::Vertical => vertical,
-            AxisName::RigidLateral => rigid_lateral,
-            AxisName::RigidYaw => rigid_yaw,
-            AxisName::RigidRollOffset => rigid_roll,
         }
     }
 
@@ -159,8 +155,10 @@ impl<'a> ContactTable<'a> {
     #[must_use]
     pub fn channels(&self, side: Side, at: &Coordinates) -> [[f32; CHANNELS]; SLOTS] {
         let side = self.side(side);
+        let plane = side.rigid.plane(at.lateral, at.yaw);
+        let (cell, _) = self.cell(&plane, &side.rigid.roll_offset(at.roll_offset), at.vertical);
         let mut lanes = Lanes::ZERO;
-        side.blend(&self.cell(at).0, &mut lanes);
+        side.blend(&cell, &mut lanes);
         slots(&lanes)
     }
 
@@ -217,7 +215,7 @@ impl<'a> ContactTable<'a> {
     #[inline(always)]
     fn prepare(&self, side: Side, pose: &Pose) -> Prepared {
         let located = self.locate(side, pose);
-        let (cell, flags) = self.cell(&located.coordinates);
+        let (cell, flags) = self.cell(&located.plane, &located.roll_offset, located.coordinates.vertical);
         Prepared { located, cell, flags }
     }
 
@@ -246,8 +244,7 @@ impl<'a> ContactTable<'a> {
     }
 
     fn counts(&self) -> [usize; 4] {
-        let [lateral, yaw, roll, vertical, ..] = &self.axes;
-        [lateral.len(), yaw.len(), roll.len(), vertical.len()]
+        self.axes.each_ref().map(Axis::len)
     }
 
     #[inline(always)]
@@ -256,17 +253,19 @@ impl<'a> ContactTable<'a> {
         let (canonical, valid) = checked(pose, side);
         let attitude = Attitude::new(canonical.pose.yaw, canonical.pose.roll);
         let displacement = Displacement::new(&data.geometry, &canonical.pose, &attitude);
-        let coordinates = data.rigid.coordinates(&displacement, attitude.yaw.value, attitude.roll.value);
-        Located { valid, canonical, attitude, displacement, coordinates }
+        let (coordinates, plane, roll_offset) =
+            data.rigid.locate(&displacement, attitude.yaw.value, attitude.roll.value);
+        Located { valid, canonical, attitude, displacement, coordinates, plane, roll_offset }
     }
 
     #[inline(always)]
-    fn cell(&self, at: &Coordinates) -> (Cell, Flags) {
-        let plane = self.plane.locate(Two::new([at.lateral, at.yaw]));
-        let section = self.section.locate(Two::new([at.roll_offset, at.vertical]));
+    fn cell(&self, plane: &Places, roll_offset: &Place, vertical: f64) -> (Cell, Flags) {
+        let [.., axis] = &self.axes;
+        let vertical = axis.locate(vertical);
         // The flags of the four axes are the lowest four bits, in the axes' order.
-        let flags = Flags::of_axes(plane.clamped | section.clamped << 2);
-        (Cell::new([&plane, &section], self.strides), flags)
+        let section = u8::from(roll_offset.clamped) | u8::from(vertical.clamped) << 1;
+        let flags = Flags::of_axes(plane.clamped | section << 2);
+        (Cell::new(plane, roll_offset, &vertical, self.strides), flags)
     }
 }
 

@@ -108,11 +108,11 @@ fn damage(image: &mut Vec<u8>, input: &mut Input<'_>) {
             }
         }
         4 => {
-            let at = place(&sections.nodes[input.below(7)], 4, input);
+            let at = place(&sections.nodes[input.below(4)], 4, input);
             put_single(image, at, input);
         }
         5 => {
-            let at = place(&sections.bins[input.below(7)], 2, input);
+            let at = place(&sections.bins[input.below(4)], 2, input);
             put(image, at, &input.bytes::<2>());
         }
         6 => {
@@ -148,7 +148,7 @@ fn put_single(image: &mut [u8], at: usize, input: &mut Input<'_>) {
 fn parsed(image: &[u8]) -> Option<(Header<'_>, Sections)> {
     let (header, rest) = postcard::take_from_bytes::<Header<'_>>(image.get(HEADER_AT..)?).ok()?;
     let length = image.len() - HEADER_AT - rest.len();
-    let sections = Sections::new(length, &header.axes, header.sides())?;
+    let sections = Sections::new(length, &header.axes, header.refinement, header.sides())?;
     (sections.total == image.len()).then_some((header, sections))
 }
 
@@ -162,7 +162,11 @@ fn header_damaged<'a>(mut header: Header<'a>, input: &mut Input<'_>) -> Header<'
         3 => &mut right.geometry.nominal_radius,
         4 => &mut right.geometry.lateral_position,
         5 => {
-            let axis = &mut header.axes[input.below(7)];
+            let index = input.below(5);
+            let Some(axis) = header.axes.get_mut(index) else {
+                header.refinement[input.below(3)] = input.byte() % 33;
+                return header;
+            };
             let count = u16::from_le_bytes(input.bytes()) % 4200;
             *(if input.byte().is_multiple_of(2) { &mut axis.nodes } else { &mut axis.bins }) = count;
             return header;
@@ -191,7 +195,7 @@ fn header_damaged<'a>(mut header: Header<'a>, input: &mut Input<'_>) -> Header<'
 fn rewritten(image: &[u8], header: &Header<'_>, old: &Sections) -> Option<Vec<u8>> {
     let mut buffer = [0; 4096];
     let bytes = postcard::to_slice(header, &mut buffer).ok()?;
-    let new = Sections::new(bytes.len(), &header.axes, header.sides())?;
+    let new = Sections::new(bytes.len(), &header.axes, header.refinement, header.sides())?;
     if new.total > 1 << 20 {
         return None;
     }

@@ -10,7 +10,9 @@ use flangeway_host::image::{ImageParts, SideParts, quantise, scale_over, scale_t
 
 /// A table's parts, owned.
 pub struct Synthetic {
-    pub axes: [Vec<f32>; 7],
+    pub axes: [Vec<f32>; 4],
+    /// Parts of an interval in the rigid maps.
+    pub refinement: [u8; 3],
     pub sides: Vec<SyntheticSide>,
 }
 
@@ -24,30 +26,28 @@ pub struct SyntheticSide {
 }
 
 /// Uneven axes of moderate size.
-pub fn uneven_axes() -> [Vec<f32>; 7] {
+pub fn uneven_axes() -> [Vec<f32>; 4] {
     [
         vec![-0.012, -0.007, -0.006, -0.0035, 0.0, 0.004, 0.0081, 0.0112],
         vec![0.0, 0.002, 0.01, 0.04],
         vec![-0.002, 0.0005, 0.003],
         vec![-0.0001, 0.00005, 0.0003],
-        vec![-0.015, -0.01, -0.0012, 0.003, 0.009, 0.015],
-        vec![0.0, 0.015, 0.05],
-        vec![-0.004, 0.004],
     ]
 }
 
 /// The smallest axes there are.
-pub fn smallest_axes() -> [Vec<f32>; 7] {
+pub fn smallest_axes() -> [Vec<f32>; 4] {
     let pair = |a: f32, b: f32| vec![a, b];
-    [
-        pair(-0.01, 0.01),
-        pair(0.0, 0.03125),
-        pair(-0.0025, 0.0025),
-        pair(0.0, 0.00025),
-        pair(-0.01, 0.01),
-        pair(0.0, 0.03125),
-        pair(-0.0025, 0.0025),
-    ]
+    [pair(-0.01, 0.01), pair(0.0, 0.03125), pair(-0.0025, 0.0025), pair(0.0, 0.00025)]
+}
+
+/// Nodes of an axis with each interval divided into parts.
+pub fn divided(axis: &[f32], parts: u8) -> Vec<f64> {
+    let inner = |w: &[f32]| {
+        let (a, b) = (f64::from(w[0]), f64::from(w[1]));
+        (0..parts).map(|k| a + (b - a) * f64::from(k) / f64::from(parts)).collect::<Vec<_>>()
+    };
+    axis.windows(2).flat_map(inner).chain(axis.last().map(|x| f64::from(*x))).collect()
 }
 
 /// Rigid roll, rad: bilinear.
@@ -100,15 +100,20 @@ pub fn normalised(axis: &[f32], x: f64) -> f64 {
 }
 
 impl Synthetic {
-    /// A table over these axes with one or two sides.
-    pub fn new(axes: [Vec<f32>; 7], sides: usize) -> Self {
-        let sides = (0..sides).map(|side| SyntheticSide::new(&axes, 0.37 * side as f64)).collect();
-        Self { axes, sides }
+    /// A table over these axes with one or two sides, the rigid maps on the same axes.
+    pub fn new(axes: [Vec<f32>; 4], sides: usize) -> Self {
+        Self::refined(axes, [1; 3], sides)
+    }
+
+    /// The same with rigid maps of so many parts in an interval.
+    pub fn refined(axes: [Vec<f32>; 4], refinement: [u8; 3], sides: usize) -> Self {
+        let sides = (0..sides).map(|side| SyntheticSide::new(&axes, refinement, 0.37 * side as f64)).collect();
+        Self { axes, refinement, sides }
     }
 
     /// A mirrored table with uneven axes.
     pub fn uneven() -> Self {
-        Self::new(uneven_axes(), 1)
+        Self::refined(uneven_axes(), [4, 1, 2], 1)
     }
 
     /// Normalised coordinates of table coordinates.
@@ -125,7 +130,8 @@ impl Synthetic {
             recipe_sha256: [7; 32],
             gauge: 1.435,
             material: Material { young_modulus: 2.1e11, poisson_ratio: 0.28 },
-            axes: [AxisCounts::default(); 7],
+            axes: [AxisCounts::default(); 4],
+            refinement: self.refinement,
             errors: ErrorFigures::default(),
             right: self.sides[0].header(),
             left: self.sides.get(1).map(SyntheticSide::header),
@@ -149,7 +155,7 @@ impl Synthetic {
 }
 
 impl SyntheticSide {
-    fn new(axes: &[Vec<f32>; 7], seed: f64) -> Self {
+    fn new(axes: &[Vec<f32>; 4], refinement: [u8; 3], seed: f64) -> Self {
         let mut scales: Scales = [[scale_over(0.0, 1.0); CHANNELS]; SLOTS];
         for slot in Slot::ALL {
             for channel in Channel::ALL {
@@ -180,12 +186,12 @@ impl SyntheticSide {
                 }
             }
         }
-        let [_, _, _, _, lateral, yaw, roll] = axes.each_ref().map(|axis| axis.iter().map(|x| f64::from(*x)));
+        let [lateral, yaw, roll] = std::array::from_fn(|i| divided(&axes[i], refinement[i]));
         let mut maps = (Vec::new(), Vec::new());
         for u in lateral {
-            for p in yaw.clone() {
+            for &p in &yaw {
                 maps.0.push(rigid_roll(u, p) as f32);
-                maps.1.extend(roll.clone().map(|r| rigid_vertical(u, p, r) as f32));
+                maps.1.extend(roll.iter().map(|r| rigid_vertical(u, p, *r) as f32));
             }
         }
         Self {

@@ -32,7 +32,11 @@ pub fn run(args: &InspectArgs) -> Result<()> {
         .map(|name| {
             let axis = table.axis(name);
             let (first, last) = axis.range();
-            (name.to_string().replace(' ', "_"), json!({ "nodes": axis.len(), "range": [first, last] }))
+            let mut value = json!({ "nodes": axis.len(), "range": [first, last] });
+            if let Some(parts) = header.refinement.get(name.index()) {
+                value["rigid_parts"] = json!(parts);
+            }
+            (name.to_string().replace(' ', "_"), value)
         })
         .collect();
     let sides: serde_json::Map<String, Value> = Side::ALL

@@ -11,8 +11,8 @@ const YAW: usize = 3;
 const VERTICAL: usize = 3;
 const ROLL: usize = 3;
 
-/// Intervals of the rigid maps in an interval of the records: lateral, yaw, roll offset.
-pub(super) const REFINEMENT: [usize; 3] = [4, 2, 2];
+/// Parts that the rigid maps divide an interval of the records into: lateral, yaw, roll offset.
+pub(super) const REFINEMENT: [u8; 3] = [4, 2, 2];
 
 /// Room (bytes) for header and padding.
 const OVERHEAD: usize = 2048;
@@ -125,17 +125,16 @@ impl Axes {
             .all(|(name, nodes)| OwnedAxis::new(name, nodes).is_ok_and(|axis| axis.bins() <= BINS_A_NODE * nodes.len()))
     }
 
-    /// Axes of the rigid maps: lateral, yaw, roll offset, every interval of the records' axes divided by
-    /// [`REFINEMENT`].
+    /// Nodes of the rigid maps: lateral, yaw, roll offset, every interval of the records' axes divided by
+    /// [`REFINEMENT`]. The image does not hold them.
     pub(super) fn rigid(&self) -> [&[f32]; 3] {
         let [lateral, yaw, roll] = &self.rigid;
         [lateral, yaw, roll]
     }
 
     /// All axes in the order of the image.
-    pub(super) fn all(&self) -> [&[f32]; 7] {
-        let [lateral, yaw, roll] = self.rigid();
-        [&self.lateral, &self.yaw, &self.roll, &self.vertical, lateral, yaw, roll]
+    pub(super) fn all(&self) -> [&[f32]; 4] {
+        [&self.lateral, &self.yaw, &self.roll, &self.vertical]
     }
 }
 
@@ -143,10 +142,10 @@ impl Axes {
 pub(super) const BINS_A_NODE: usize = 16;
 
 /// Each interval divided into `parts`.
-fn divided(nodes: &[f32], parts: usize) -> Vec<f32> {
+fn divided(nodes: &[f32], parts: u8) -> Vec<f32> {
     let inner = |w: &[f32]| {
         let (a, b) = (f64::from(w[0]), f64::from(w[1]));
-        (0..parts).map(|k| (a + (b - a) * k as f64 / parts as f64) as f32).collect::<Vec<_>>()
+        (0..parts).map(|k| (a + (b - a) * f64::from(k) / f64::from(parts)) as f32).collect::<Vec<_>>()
     };
     nodes.windows(2).flat_map(inner).chain(nodes.last().copied()).collect()
 }

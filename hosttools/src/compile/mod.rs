@@ -195,6 +195,7 @@ fn image(recipe: &Recipe, pair: &Pair, axes: &Axes, sides: &[CompiledSide], erro
         gauge: recipe.rail.gauge_m.unwrap_or(0.0),
         material: flangeway::Material { young_modulus: material.youngs_modulus, poisson_ratio: material.poisson_ratio },
         axes: Default::default(),
+        refinement: axes::REFINEMENT,
         errors,
         right: side_header(Side::Right, right),
         left: sides.get(1).map(|left| side_header(Side::Left, left)),

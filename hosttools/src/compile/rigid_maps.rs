@@ -37,11 +37,12 @@ fn without_kink(touches: &[Touch], [_, yaws, rolls]: [usize; 3], k: usize) -> f3
         let mut weight = 1.0;
         let mut at = [0; 3];
         for axis in 0..3 {
-            let inside = place[axis] % REFINEMENT[axis];
-            let share = inside as f64 / REFINEMENT[axis] as f64;
+            let parts = usize::from(REFINEMENT[axis]);
+            let inside = place[axis] % parts;
+            let share = inside as f64 / parts as f64;
             let upper = corner >> axis & 1 == 1;
             weight *= if upper { share } else { 1.0 - share };
-            at[axis] = place[axis] - inside + if upper && inside > 0 { REFINEMENT[axis] } else { 0 };
+            at[axis] = place[axis] - inside + if upper && inside > 0 { parts } else { 0 };
         }
         if weight > 0.0 {
             let corner = &touches[(at[0] * yaws + at[1]) * rolls + at[2]];
