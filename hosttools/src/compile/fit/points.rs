@@ -4,7 +4,7 @@
 use flangeway::{AxisName, CHANNELS, Coordinates, SLOTS, Side};
 use rayon::prelude::*;
 
-use crate::compile::axes::Axes;
+use crate::compile::axes::{Axes, REFINEMENT};
 use crate::compile::quantise;
 use crate::compile::stencil::Place;
 use crate::error::Result;
@@ -79,7 +79,7 @@ impl<'a> Drawing<'a> {
         Ok(Self {
             pair,
             side,
-            maps: OwnedRigidMaps::new(axes.rigid(), roll, vertical)?,
+            maps: OwnedRigidMaps::new([&axes.lateral, &axes.yaw, &axes.roll], REFINEMENT, roll, vertical)?,
             nodes: [&axes.lateral, &axes.yaw, &axes.roll, &axes.vertical],
             axes: [
                 OwnedAxis::new(AxisName::Lateral, &axes.lateral)?,
