@@ -279,10 +279,15 @@ impl<'a> AxisPair<'a> {
 
 /// Two neighbours of a list of `f32`; zeros beyond its end.
 #[inline(always)]
-pub(crate) fn pair(list: &[[u8; 4]], index: u32) -> Two {
+fn pair(list: &[[u8; 4]], index: u32) -> Two {
     let index = index as usize;
-    let [low, high] = list.get(index..index + 2).and_then(<[_]>::first_chunk).copied().unwrap_or_default();
-    Two::new([f64::from(f32::from_le_bytes(low)), f64::from(f32::from_le_bytes(high))])
+    numbers(list.get(index..index + 2).and_then(<[_]>::first_chunk).unwrap_or(&[[0; 4]; 2]))
+}
+
+/// Two `f32` from their bytes.
+#[inline(always)]
+pub(crate) fn numbers([low, high]: &[[u8; 4]; 2]) -> Two {
+    Two::new([f64::from(f32::from_le_bytes(*low)), f64::from(f32::from_le_bytes(*high))])
 }
 
 impl fmt::Debug for Axis<'_> {

@@ -94,11 +94,11 @@ impl Channel {
         self as usize
     }
 
-    /// Lane of this channel of a slot in the record.
+    /// Lane of this channel of a slot in the record: the slots of a channel are neighbours.
     #[inline]
     #[must_use]
     pub const fn lane(self, slot: Slot) -> usize {
-        slot.index() * CHANNELS + self.index()
+        self.index() * SLOTS + slot.index()
     }
 
     /// Largest magnitude a scale may give this channel, in its own unit. A table with a wider scale is refused: no

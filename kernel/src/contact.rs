@@ -4,7 +4,7 @@ use heapless::Vec;
 use nalgebra::Vector3;
 
 use crate::blend::Lanes;
-use crate::channel::{CHANNELS, SLOTS, Slot};
+use crate::channel::{Channel, SLOTS, Slot};
 use crate::displacement::Attitude;
 use crate::flags::Flags;
 use crate::math::{Four, Two, single};
@@ -38,6 +38,7 @@ pub struct Contact {
 }
 
 impl Contact {
+    #[cfg(test)]
     const NONE: Self = Self::new(Slot::Tread, [0.0; 4], [0.0; 4], [0.0; 4]);
 
     /// A contact from its numbers in order.
@@ -163,9 +164,8 @@ struct Candidates {
 /// ```
 #[inline(always)]
 fn rebuild(lanes: &Lanes, frame: &Frame<'_>) -> Candidates {
-    let [indentation, c, k, k_across] = Four::transpose(channels(lanes, 0));
-    let [e, s, radius_offset, angle] = Four::transpose(channels(lanes, 4));
-    let [_, _, wheel_curvature, rail_curvature] = Four::transpose(channels(lanes, 6));
+    let [indentation, c, k, k_across, e, s, radius_offset, angle, wheel_curvature, rail_curvature] =
+        Channel::ALL.map(|channel| of_slots(lanes, channel));
     let zero = Four::all(0.0);
     let depth = indentation.at_least(zero);
     let root = depth.sqrt();
@@ -181,14 +181,11 @@ fn rebuild(lanes: &Lanes, frame: &Frame<'_>) -> Candidates {
     }
 }
 
-/// Four channels from this one on, of each slot; the last slot twice.
+/// A channel of the three slots, and a number that is not used.
 #[inline(always)]
-fn channels(lanes: &Lanes, from: usize) -> [Four; 4] {
-    let of = |slot: usize| {
-        let start = slot * CHANNELS + from;
-        Four::new(lanes.0.get(start..start + 4).and_then(<[_]>::first_chunk).copied().unwrap_or_default())
-    };
-    [of(0), of(1), of(2), of(2)]
+fn of_slots(lanes: &Lanes, channel: Channel) -> Four {
+    let start = channel.lane(Slot::Tread);
+    Four::new(lanes.0.get(start..start + 4).and_then(<[_]>::first_chunk).copied().unwrap_or_default())
 }
 
 /// Contact point in the track frame of the canonical wheel.
@@ -224,18 +221,6 @@ fn position(e: Four, s: Four, radius_offset: Four, radius: Four, frame: &Frame<'
     ]
 }
 
-/// Where the slots' contacts go in the list, and how many there are, by the bits that say which carry force.
-static PLACES: [([u8; SLOTS], u8); 8] = [
-    ([0, 0, 0], 0),
-    ([0, 1, 1], 1),
-    ([0, 0, 1], 1),
-    ([0, 1, 2], 2),
-    ([0, 0, 0], 1),
-    ([0, 1, 1], 2),
-    ([0, 0, 1], 2),
-    ([0, 1, 2], 3),
-];
-
 impl Contacts {
     /// None, without remarks.
     pub const NONE: Self = Self { list: Vec::new(), flags: Flags::NONE };
@@ -249,20 +234,13 @@ impl Contacts {
         let (first, second) = (Four::transpose(candidates.first), Four::transpose(candidates.second));
         let third = Four::transpose(candidates.third);
         self.list.clear();
-        for _ in 0..SLOTS {
-            // There is room for as many as there are slots.
-            let _ = self.list.push(Contact::NONE);
+        let mut length = 0;
+        for (((slot, first), second), third) in Slot::ALL.into_iter().zip(first).zip(second).zip(third) {
+            // There is room for as many as there are slots. A contact without force is written too, and taken back.
+            let _ = self.list.push(Contact::new(slot, first.numbers(), second.numbers(), third.numbers()));
+            length += carries >> slot.index() & 1;
+            self.list.truncate(length);
         }
-        let (places, length) = PLACES.get(carries & 7).copied().unwrap_or_default();
-        let slots = Slot::ALL.into_iter().zip(first).zip(second).zip(third).zip(places);
-        for ((((slot, first), second), third), place) in slots {
-            // A contact without force is written too, and overwritten by the next or cut off at the end.
-            if let Some(contact) = self.list.get_mut(usize::from(place)) {
-                *contact = Contact::new(slot, first.numbers(), second.numbers(), third.numbers());
-            }
-        }
-        let length = usize::from(length);
-        self.list.truncate(length);
         length > 0
     }
 }
@@ -270,7 +248,6 @@ impl Contacts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::channel::Channel;
     use crate::pose::{Pose, Side};
 
     fn tilted(angle: f32) -> Contact {

@@ -83,6 +83,7 @@ mod blend;
 mod channel;
 mod check;
 mod contact;
+mod corners;
 mod displacement;
 mod error;
 mod flags;

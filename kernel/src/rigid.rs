@@ -1,6 +1,7 @@
 //! The rigid maps: where the wheelset touches both rails without indentation, by interpolation.
 
-use crate::axis::{Axis, AxisPair, Place, Places, index, pair};
+use crate::axis::{Axis, AxisPair, Place, Places, index, numbers};
+use crate::corners::{four_pairs, two_pairs};
 use crate::displacement::{Displacement, pose_with};
 use crate::header::MAX_PARTS;
 use crate::layout::refined;
@@ -78,6 +79,9 @@ impl core::fmt::Debug for RigidMaps<'_> {
     }
 }
 
+/// Values of a cell that a checked map does not have.
+const NOTHING: &[[u8; 4]; 2] = &[[0; 4]; 2];
+
 /// a + t (b - a)
 #[inline(always)]
 fn lerp(a: f64, b: f64, t: f64) -> f64 {
@@ -148,7 +152,8 @@ impl<'a> RigidMaps<'a> {
     #[inline(always)]
     fn roll_at(&self, at: InPlane) -> f64 {
         let base = at.lateral * self.roll_row + at.yaw;
-        let [a, b] = lerp2(pair(self.roll, base), pair(self.roll, base + self.roll_row), at.u).numbers();
+        let [near, far] = two_pairs(self.roll, base, self.roll_row).unwrap_or([NOTHING; 2]).map(numbers);
+        let [a, b] = lerp2(near, far, at.u).numbers();
         lerp(a, b, at.psi)
     }
 
@@ -156,8 +161,9 @@ impl<'a> RigidMaps<'a> {
     fn vertical_at(&self, at: InPlane, roll_offset: &Place) -> f64 {
         let ([roll, _], fraction) = self.roll_parts.of([index(roll_offset.cell); 2], Two::all(roll_offset.fraction));
         let base = at.lateral * self.slab + at.yaw * self.row + roll;
-        let along = |base| lerp2(pair(self.vertical, base), pair(self.vertical, base + self.slab), at.u);
-        let [a, b] = lerp2(along(base), along(base + self.row), at.psi).numbers();
+        let corners = four_pairs(self.vertical, base, [self.slab, self.row]).unwrap_or([NOTHING; 4]);
+        let [near, near_next, far, far_next] = corners.map(numbers);
+        let [a, b] = lerp2(lerp2(near, far, at.u), lerp2(near_next, far_next, at.u), at.psi).numbers();
         let [fraction, _] = fraction.numbers();
         lerp(a, b, fraction)
     }

@@ -4,7 +4,7 @@ use core::fmt;
 use core::hint::black_box;
 
 use crate::axis::{Axis, AxisName, Place, Places};
-use crate::blend::{Cell, LaneScales, Lanes, edge};
+use crate::blend::{Cell, LaneScales, Lanes, edges};
 use crate::channel::{CHANNELS, CONFORMAL_LANE, Channel, LANES, SLOTS, Slot};
 use crate::check;
 use crate::contact::{Contacts, Frame, Wheel};
@@ -172,11 +172,8 @@ impl<'a> ContactTable<'a> {
 
     #[inline(always)]
     fn prefetch_cell(&self, side: Side, cell: &Cell) {
-        let records = self.side(side).records;
-        for index in cell.edges {
-            for record in edge(records, index) {
-                prefetch(record);
-            }
+        for record in edges(self.side(side).records, cell).into_iter().flatten() {
+            prefetch(record);
         }
     }
 
@@ -277,7 +274,7 @@ impl fmt::Debug for ContactTable<'_> {
 
 impl<'a> SideData<'a> {
     fn new(header: &SideHeader<'_>, rigid: RigidMaps<'a>, records: &'a [[u8; RECORD]]) -> Self {
-        let scales = LaneScales::new(header.scales.as_flattened());
+        let scales = LaneScales::new(&header.scales);
         Self { geometry: header.geometry, wheel: Wheel::new(&header.geometry), rigid, records, scales }
     }
 
@@ -294,8 +291,10 @@ impl<'a> SideData<'a> {
 /// The lanes as slots of channels.
 fn slots(lanes: &Lanes) -> [[f32; CHANNELS]; SLOTS] {
     let mut slots = [[0.0; CHANNELS]; SLOTS];
-    for (channel, lane) in slots.as_flattened_mut().iter_mut().zip(&lanes.0) {
-        *channel = *lane;
+    for (slot, values) in Slot::ALL.into_iter().zip(&mut slots) {
+        for (channel, value) in Channel::ALL.into_iter().zip(values) {
+            *value = lanes.0.get(channel.lane(slot)).copied().unwrap_or_default();
+        }
     }
     slots
 }

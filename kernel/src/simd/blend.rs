@@ -5,7 +5,7 @@ use core::arch::x86_64::*;
 use core::sync::atomic::{Ordering, compiler_fence};
 
 use super::{Two, numbers};
-use crate::blend::{BLOCK, Cell, FINE, FINE_BITS, FINE_MASK, FINE_STEP, LaneScales, Lanes, edge, fractions};
+use crate::blend::{BLOCK, Cell, FINE, FINE_BITS, FINE_MASK, FINE_STEP, LaneScales, Lanes, edges, fractions};
 use crate::channel::LANES;
 use crate::layout::RECORD;
 
@@ -82,13 +82,12 @@ fn pairs(w: __m128i) -> [__m128i; 4] {
 }
 
 /// The edges' records, lower and upper, two edges together.
-type Edges<'a> = [[&'a [[u8; RECORD]; 2]; 2]; 4];
+type EdgePairs<'a> = [[&'a [[u8; RECORD]; 2]; 2]; 4];
 
 #[inline(always)]
-fn edges<'a>(records: &'a [[u8; RECORD]], cell: &Cell) -> Edges<'a> {
-    let [a, b, c, d, e, f, g, h] = cell.edges;
-    let at = |index| edge(records, index);
-    [[at(a), at(b)], [at(c), at(d)], [at(e), at(f)], [at(g), at(h)]]
+fn edge_pairs<'a>(records: &'a [[u8; RECORD]], cell: &Cell) -> EdgePairs<'a> {
+    let [a, b, c, d, e, f, g, h] = edges(records, cell);
+    [[a, b], [c, d], [e, f], [g, h]]
 }
 
 /// Four sums at the lower node and the rise to the upper node, as `f32`.
@@ -102,7 +101,7 @@ fn base_and_rise([low, high]: [__m128i; 2]) -> [__m128; 2] {
 #[cfg(any(test, not(target_feature = "avx2")))]
 #[inline(always)]
 pub(crate) fn blend_128(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales, lanes: &mut Lanes) {
-    let edges = edges(records, cell);
+    let edges = edge_pairs(records, cell);
     let weights = Weights::new(cell);
     let weights = (pairs(weights.coarse), pairs(weights.fine));
     if let [a, b, c, d, e, f, g, h] = lanes.0.as_chunks_mut().0 {
@@ -121,7 +120,7 @@ pub(crate) fn blend_128(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScal
 #[cfg(any(test, not(target_feature = "avx2")))]
 #[inline(always)]
 fn eight<const V: usize>(
-    edges: &Edges<'_>,
+    edges: &EdgePairs<'_>,
     (coarse, fine): &([__m128i; 4], [__m128i; 4]),
     cell: &Cell,
     scales: &LaneScales,
@@ -170,7 +169,7 @@ fn four([a, b, c, d]: [f32; 4]) -> __m128 {
 #[inline(always)]
 pub(crate) fn blend_256(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales, lanes: &mut Lanes) {
     unsafe {
-        let edges = edges(records, cell);
+        let edges = edge_pairs(records, cell);
         let weights = Weights::new(cell);
         let wide = |w: __m128i| {
             let [a, b, c, d] = pairs(w);
@@ -191,7 +190,7 @@ pub(crate) fn blend_256(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScal
 #[cfg(target_feature = "avx2")]
 #[inline(always)]
 fn sixteen<const V: usize>(
-    edges: &Edges<'_>,
+    edges: &EdgePairs<'_>,
     (coarse, fine): &([__m256i; 4], [__m256i; 4]),
     cell: &Cell,
     scales: &LaneScales,
