@@ -18,7 +18,7 @@ fn check(nodes: &[f32], x: f64) {
     let (lower, upper) = (f64::from(nodes[place.cell]), f64::from(nodes[place.cell + 1]));
     let (first, last) = (f64::from(nodes[0]), f64::from(nodes[nodes.len() - 1]));
     assert_eq!(place.clamped, x < first || x > last);
-    let fraction = (x - lower) / (upper - lower);
+    let fraction = (x - lower) * (1.0 / (upper - lower));
     assert_eq!(place.fraction, fraction.clamp(0.0, 1.0));
     assert_eq!(place.unclamped, fraction.clamp(-1024.0, 1024.0));
 }

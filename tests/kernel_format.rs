@@ -19,8 +19,8 @@ fn every_byte_of_a_tiny_image() {
     let tiny = Synthetic::new(smallest_axes(), 1);
     let image = tiny.image();
     // Prelude.
-    assert_eq!(image[..12], [b'F', b'W', b'T', b'1', 1, 0, 0, 0, 0x80, 0x06, 0, 0]);
-    assert_eq!(image.len(), 0x0680);
+    assert_eq!(image[..12], [b'F', b'W', b'T', b'1', 1, 0, 0, 0, 0x00, 0x07, 0, 0]);
+    assert_eq!(image.len(), 0x0700);
     let crc = crc32c(image[..12].iter().chain(&image[16..]).copied());
     assert_eq!(image[12..16], crc.to_le_bytes());
     assert_eq!(image[16..20], [0xd6, 0x01, 0, 0]);
@@ -49,17 +49,20 @@ fn every_byte_of_a_tiny_image() {
     bytes.push(0); // no left side
     assert_eq!(bytes.len(), 20 + 0x01d6);
     bytes.resize(512, 0);
-    // Axes: nodes, then one bin each, which leads to cell 0.
-    for node in tiny.axes.concat() {
-        bytes.extend(node.to_le_bytes());
+    // Axes: two nodes each, then one bin each, which leads to cell 0.
+    for axis in &tiny.axes {
+        let (first, last) = (f64::from(axis[0]), f64::from(axis[1]));
+        for number in [first, 1.0 / (last - first), last, 0.0] {
+            bytes.extend(number.to_le_bytes());
+        }
     }
     bytes.extend([0; 8]);
-    bytes.resize(576, 0);
+    bytes.resize(704, 0);
     // Rigid maps.
     for value in tiny.sides[0].rigid_roll.iter().chain(&tiny.sides[0].rigid_vertical) {
         bytes.extend(value.to_le_bytes());
     }
-    bytes.resize(640, 0);
+    bytes.resize(768, 0);
     for lane in tiny.sides[0].records.as_flattened() {
         bytes.extend(lane.to_le_bytes());
     }
@@ -116,27 +119,29 @@ fn says_what_is_wrong() {
     let message = |at: usize, bytes: &[u8]| ContactTable::new(&forged(&image, at, bytes)).unwrap_err().to_string();
     assert_eq!(message(0, b"\x7fELF"), "not a contact table: it begins with \"\\x7fELF\", not with \"FWT1\"");
     assert_eq!(message(4, &[2]), "table has format version 2, this program reads version 1");
-    assert_eq!(message(16, &[0xff; 4]), "header length is 4294967295 bytes, at most 1644 fit");
+    assert_eq!(message(16, &[0xff; 4]), "header length is 4294967295 bytes, at most 1772 fit");
     assert_eq!(message(16, &[0xd5]), "header at byte 20 cannot be read");
     assert_eq!(message(16, &[0xd7]), "header at byte 20 cannot be read");
     let gauge = 20 + 16 + 5 + 32;
     assert_eq!(message(gauge, &f64::NAN.to_le_bytes()), "header field gauge is NaN, plausible are 0.1 to 3");
-    assert_eq!(message(gauge + 24, &[3]), "header describes a table of 2240 bytes, this one has 1664");
+    assert_eq!(message(gauge + 24, &[3]), "header describes a table of 2368 bytes, this one has 1792");
     assert_eq!(message(511, &[9]), "padding at byte 511 is 9, not 0");
     let node = "lateral axis: node 1 is NaN, not a number above the node before and within plausible bounds";
-    assert_eq!(message(516, &f32::NAN.to_le_bytes()), node);
+    assert_eq!(message(528, &f64::NAN.to_le_bytes()), node);
+    let reciprocal = "lateral axis: node 1 has the reciprocal 1, its cell's width says otherwise";
+    assert_eq!(message(536, &1.0_f64.to_le_bytes()), reciprocal);
     for parts in [0, 3, 17, 32, 255] {
         let refinement = format!("rigid maps have {parts} parts in an interval of the yaw axis, not 1, 2, 4, 8 or 16");
         assert_eq!(message(gauge + 24 + 8 + 1, &[parts]), refinement);
     }
-    assert_eq!(message(512 + 32, &[1, 0]), "lateral axis: bin 0 leads to cell 1, its nodes say otherwise");
+    assert_eq!(message(640, &[1, 0]), "lateral axis: bin 0 leads to cell 1, its nodes say otherwise");
     assert_eq!(
-        message(576, &f32::INFINITY.to_le_bytes()),
-        "rigid map value at byte 576 is inf, plausible are -0.125 to 0.125"
+        message(704, &f32::INFINITY.to_le_bytes()),
+        "rigid map value at byte 704 is inf, plausible are -0.125 to 0.125"
     );
-    assert_eq!(message(592, &2.0_f32.to_le_bytes()), "rigid map value at byte 592 is 2, plausible are -1 to 1");
-    let lane = "record at byte 640 has 1 in lane 31, which allows no such value";
-    assert_eq!(message(640 + 62, &[1, 0]), lane);
+    assert_eq!(message(720, &2.0_f32.to_le_bytes()), "rigid map value at byte 720 is 2, plausible are -1 to 1");
+    let lane = "record at byte 768 has 1 in lane 31, which allows no such value";
+    assert_eq!(message(768 + 62, &[1, 0]), lane);
     let first_scale = 20 + 0x01d6 - 1 - 240;
     let scale = "scale of indentation (right tread) has offset 3e-5 and step 0e0: the step must be above zero \
                  and no value beyond 1e-1";

@@ -9,7 +9,8 @@ use flangeway::layout::{
     checksum, refined,
 };
 use flangeway::{
-    Axis, AxisCounts, AxisName, ContactTable, Header, LANES, MAX_BINS, RigidMaps, Scale, bin_of, bins_per_unit,
+    Axis, AxisCounts, AxisName, ContactTable, Header, LANES, MAX_BINS, NodeBytes, RigidMaps, Scale, bin_of,
+    bins_per_unit,
 };
 
 use crate::error::{Error, Result};
@@ -42,7 +43,7 @@ pub struct SideParts<'a> {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OwnedAxis {
     name: AxisName,
-    nodes: Vec<[u8; 4]>,
+    nodes: Vec<NodeBytes>,
     map: Vec<[u8; 2]>,
 }
 
@@ -60,7 +61,7 @@ impl OwnedAxis {
         })?;
         let axis = Self {
             name,
-            nodes: nodes.iter().map(|x| x.to_le_bytes()).collect(),
+            nodes: (0..nodes.len()).map(|i| node_bytes(nodes, i)).collect(),
             map: map.iter().map(|cell| cell.to_le_bytes()).collect(),
         };
         Axis::new(name, &axis.nodes, &axis.map).map_err(|e| Error::field("", format!("{name} axis"), e.to_string()))?;
@@ -86,6 +87,13 @@ impl OwnedAxis {
         let count = |n: usize| u16::try_from(n).unwrap_or(u16::MAX);
         AxisCounts { nodes: count(self.nodes.len()), bins: count(self.map.len()) }
     }
+}
+
+/// A node as the image holds it: its coordinate and the reciprocal of the distance to the next, 0 at the last.
+fn node_bytes(nodes: &[f32], index: usize) -> NodeBytes {
+    let at = f64::from(nodes[index]);
+    let reciprocal = nodes.get(index + 1).map_or(0.0, |next| 1.0 / (f64::from(*next) - at));
+    [at, reciprocal].map(f64::to_le_bytes)
 }
 
 /// Smallest map of uniform bins to cells such that no bin holds two inner nodes; none if there is none.
@@ -187,7 +195,7 @@ pub fn write_image(parts: &ImageParts<'_>) -> Result<Vec<u8>> {
     image[HEADER_LENGTH_AT].copy_from_slice(&number(header_bytes.len()));
     image[HEADER_AT..HEADER_AT + header_bytes.len()].copy_from_slice(&header_bytes);
     for ((axis, nodes), bins) in axes.iter().zip(&sections.nodes).zip(&sections.bins) {
-        image[nodes.clone()].copy_from_slice(axis.nodes.as_flattened());
+        image[nodes.clone()].copy_from_slice(axis.nodes.as_flattened().as_flattened());
         image[bins.clone()].copy_from_slice(axis.map.as_flattened());
     }
     let [right, left] = &sections.sides;

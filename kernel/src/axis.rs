@@ -3,7 +3,7 @@
 use core::fmt;
 
 use crate::error::TableError;
-use crate::math::{Two, at_least, at_most};
+use crate::math::{Two, at_least, at_most, single};
 
 /// Most bins an axis can have.
 pub const MAX_BINS: usize = 4096;
@@ -71,6 +71,12 @@ pub struct Place {
     pub clamped: bool,
 }
 
+/// A node in the image: its coordinate and the reciprocal of the distance to the next node (0 at the last), `f64`.
+pub type NodeBytes = [[u8; 8]; 2];
+
+/// Nodes for a cell that a checked axis does not have.
+const NOTHING: &[NodeBytes; 2] = &[[[0; 8]; 2]; 2];
+
 /// An axis, read in place: its nodes, and the map of uniform bins to cells by which a cell is found in constant time.
 ///
 /// Bins divide first node to last node evenly, as many as it takes that none holds two inner nodes. `map[bin]` is the
@@ -79,7 +85,7 @@ pub struct Place {
 /// point, so the search is exact however its products round. The cost is the same for every coordinate and spacing.
 #[derive(Clone, Copy)]
 pub struct Axis<'a> {
-    nodes: &'a [[u8; 4]],
+    nodes: &'a [NodeBytes],
     map: &'a [[u8; 2]],
     first: f64,
     last: f64,
@@ -111,12 +117,12 @@ pub fn bins_per_unit(first: f64, last: f64, bins: usize) -> f64 {
 }
 
 impl<'a> Axis<'a> {
-    /// An axis over little-endian `f32` nodes and `u16` bins.
+    /// An axis over little-endian nodes and `u16` bins.
     ///
     /// # Errors
-    /// Fewer than two nodes, no bins or too many, nodes that are not strictly increasing numbers within
-    /// [`AxisName::bounds`], bins that do not fit the nodes.
-    pub fn new(name: AxisName, nodes: &'a [[u8; 4]], map: &'a [[u8; 2]]) -> Result<Self, TableError> {
+    /// Fewer than two nodes, no bins or too many, nodes that are not strictly increasing `f32` within
+    /// [`AxisName::bounds`], reciprocals or bins that do not fit the nodes.
+    pub fn new(name: AxisName, nodes: &'a [NodeBytes], map: &'a [[u8; 2]]) -> Result<Self, TableError> {
         let counts = TableError::AxisCount { axis: name, nodes: count(nodes.len()), bins: count(map.len()) };
         if nodes.len() < 2 || nodes.len() > MAX_BINS + 2 || map.is_empty() || map.len() > MAX_BINS {
             return Err(counts);
@@ -124,13 +130,17 @@ impl<'a> Axis<'a> {
         let (least, largest) = name.bounds();
         let mut before = f32::NEG_INFINITY;
         for (index, bytes) in nodes.iter().enumerate() {
-            let value = f32::from_le_bytes(*bytes);
+            let (exact, value) = (coordinate(bytes), single(coordinate(bytes)));
             // A comparison with NaN is false.
-            let good = value > before && value >= least && value <= largest;
+            let good = value > before && value >= least && value <= largest && f64::from(value) == exact;
             if !good {
                 return Err(TableError::AxisNode { axis: name, index, value });
             }
             before = value;
+        }
+        for (index, at) in nodes.iter().enumerate() {
+            let needed = nodes.get(index + 1).map_or(0.0, |next| 1.0 / (coordinate(next) - coordinate(at)));
+            check_reciprocal(name, index, at, needed)?;
         }
         let mut axis = Self { nodes, map, first: 0.0, last: 0.0, below_last: 0.0, bins_per_unit: 0.0, last_bin: 0.0 };
         axis.first = axis.node(0);
@@ -166,11 +176,15 @@ impl<'a> Axis<'a> {
         bin_of(x, self.first, self.bins_per_unit, self.map.len())
     }
 
-    /// Cell of a coordinate below the last node, from its bin.
+    /// Cell of a coordinate below the last node, from its bin; the cell's lower node and the reciprocal of its width.
     #[inline(always)]
-    fn cell(&self, bin: usize, x: f64) -> u32 {
+    fn cell(&self, bin: usize, x: f64) -> (u32, Two) {
         let at_start = u32::from(u16::from_le_bytes(self.map.get(bin).copied().unwrap_or_default()));
-        at_start + u32::from(x >= self.node(at_start as usize + 1))
+        let index = at_start as usize;
+        let pair @ [_, next] = self.nodes.get(index..index + 2).and_then(<[_]>::first_chunk).unwrap_or(NOTHING);
+        let beyond = x >= coordinate(next);
+        let node = pair.get(usize::from(beyond)).unwrap_or(next);
+        (at_start + u32::from(beyond), Two::new(node.map(f64::from_le_bytes)))
     }
 
     /// Number of nodes.
@@ -191,12 +205,12 @@ impl<'a> Axis<'a> {
     #[inline]
     #[must_use]
     pub fn node(&self, index: usize) -> f64 {
-        f64::from(f32::from_le_bytes(self.nodes.get(index).copied().unwrap_or_default()))
+        self.nodes.get(index).map_or(0.0, coordinate)
     }
 
     /// All nodes' coordinates, m or rad.
     pub fn nodes(&self) -> impl Iterator<Item = f64> + 'a {
-        self.nodes.iter().map(|bytes| f64::from(f32::from_le_bytes(*bytes)))
+        self.nodes.iter().map(coordinate)
     }
 
     /// First and last node, m or rad.
@@ -213,9 +227,9 @@ impl<'a> Axis<'a> {
         // The bin as in `bin_of`, limited before it is truncated: the same bin, in fewer instructions.
         let position = at_most(at_least((x - self.first) * self.bins_per_unit, 0.0), self.last_bin);
         let [bin, _] = Two::all(position).truncate();
-        let cell = self.cell(bin, at_most(x, self.below_last));
-        let [lower, upper] = pair(self.nodes, cell).numbers();
-        let unclamped = (x - lower) / (upper - lower);
+        let (cell, node) = self.cell(bin, at_most(x, self.below_last));
+        let [lower, per_unit] = node.numbers();
+        let unclamped = (x - lower) * per_unit;
         let fraction = at_most(at_least(unclamped, 0.0), 1.0);
         Place {
             cell: cell as usize,
@@ -269,25 +283,23 @@ impl<'a> AxisPair<'a> {
         let [bin_a, bin_b] = bins.at_most(Two::new(self.last_bin)).truncate();
         let [x_a, x_b] = x.at_most(Two::new(self.below_last)).numbers();
         let [a, b] = &self.axes;
-        let (cell_a, cell_b) = (a.cell(bin_a, x_a), b.cell(bin_b, x_b));
-        let [lower, upper] = Two::transpose([pair(a.nodes, cell_a), pair(b.nodes, cell_b)]);
-        let unclamped = (x - lower) / (upper - lower);
+        let ((cell_a, node_a), (cell_b, node_b)) = (a.cell(bin_a, x_a), b.cell(bin_b, x_b));
+        let [lower, per_unit] = Two::transpose([node_a, node_b]);
+        let unclamped = (x - lower) * per_unit;
         let fraction = unclamped.at_least(Two::all(0.0)).at_most(Two::all(1.0));
         Places { cells: [cell_a, cell_b], fraction, clamped: fraction.differs(unclamped).bits() }
     }
 }
 
-/// Two neighbours of a list of `f32`; zeros beyond its end.
+/// A node's coordinate, m or rad.
 #[inline(always)]
-fn pair(list: &[[u8; 4]], index: u32) -> Two {
-    let index = index as usize;
-    numbers(list.get(index..index + 2).and_then(<[_]>::first_chunk).unwrap_or(&[[0; 4]; 2]))
+fn coordinate([coordinate, _]: &NodeBytes) -> f64 {
+    f64::from_le_bytes(*coordinate)
 }
 
-/// Two `f32` from their bytes.
-#[inline(always)]
-pub(crate) fn numbers([low, high]: &[[u8; 4]; 2]) -> Two {
-    Two::new([f64::from(f32::from_le_bytes(*low)), f64::from(f32::from_le_bytes(*high))])
+fn check_reciprocal(axis: AxisName, index: usize, [_, reciprocal]: &NodeBytes, needed: f64) -> Result<(), TableError> {
+    let found = f64::from_le_bytes(*reciprocal);
+    if found.to_bits() == needed.to_bits() { Ok(()) } else { Err(TableError::AxisReciprocal { axis, index, found }) }
 }
 
 impl fmt::Debug for Axis<'_> {
@@ -306,8 +318,10 @@ mod tests {
     use super::*;
     use std::vec::Vec;
 
-    fn bytes(nodes: &[f32], map: &[u16]) -> (Vec<[u8; 4]>, Vec<[u8; 2]>) {
-        (nodes.iter().map(|x| x.to_le_bytes()).collect(), map.iter().map(|x| x.to_le_bytes()).collect())
+    fn bytes(nodes: &[f32], map: &[u16]) -> (Vec<NodeBytes>, Vec<[u8; 2]>) {
+        let reciprocal = |i: usize| nodes.get(i + 1).map_or(0.0, |next| 1.0 / (f64::from(*next) - f64::from(nodes[i])));
+        let node = |(i, x): (usize, &f32)| [f64::from(*x), reciprocal(i)].map(f64::to_le_bytes);
+        (nodes.iter().enumerate().map(node).collect(), map.iter().map(|x| x.to_le_bytes()).collect())
     }
 
     #[test]
@@ -319,7 +333,7 @@ mod tests {
             assert_eq!(axis.locate(x).cell, cell, "{x}");
         }
         let end = axis.locate(axis.node(3));
-        assert_eq!((end.fraction, end.clamped), (1.0, false));
+        assert!((end.fraction - 1.0).abs() < 1e-15 && !end.clamped);
         let node = axis.locate(axis.node(2));
         assert_eq!((node.cell, node.fraction), (2, 0.0));
         let outside = axis.locate(0.13);
@@ -338,6 +352,13 @@ mod tests {
         assert!(matches!(check(&[0.0, f32::NAN], &[0]), TableError::AxisNode { index: 1, .. }));
         assert!(matches!(check(&[-0.1, 0.1], &[0]), TableError::AxisNode { index: 0, .. }));
         assert!(matches!(check(&[0.0, 0.5], &[0]), TableError::AxisNode { index: 1, .. }));
+        let (mut nodes, map) = bytes(&[0.0, 0.1], &[0]);
+        nodes[0][1] = 9.9_f64.to_le_bytes();
+        let refused = Axis::new(AxisName::Yaw, &nodes, &map).map(|_| ()).unwrap_err();
+        assert!(matches!(refused, TableError::AxisReciprocal { index: 0, found: 9.9, .. }));
+        nodes[0] = [1e-300_f64, 10.0].map(f64::to_le_bytes);
+        let refused = Axis::new(AxisName::Yaw, &nodes, &map).map(|_| ()).unwrap_err();
+        assert!(matches!(refused, TableError::AxisNode { index: 0, .. }));
         assert!(matches!(check(&[0.0, 0.05, 0.1], &[1]), TableError::AxisBin { index: 0, .. }));
         assert!(matches!(check(&[0.0, 0.03, 0.06, 0.1], &[0]), TableError::AxisBin { index: 0, .. }));
     }

@@ -131,7 +131,7 @@ pub(crate) fn axes<'a>(image: &'a [u8], header: &Header<'_>, sections: &Sections
         }
         let nodes = sections.nodes.get(name.index()).ok_or(missing)?;
         let bins = sections.bins.get(name.index()).ok_or(missing)?;
-        Axis::new(name, chunks(image, nodes), chunks(image, bins))
+        Axis::new(name, chunks(image, nodes).as_chunks().0, chunks(image, bins))
     };
     let [a, b, c, d] = AxisName::ALL;
     Ok([axis(a)?, axis(b)?, axis(c)?, axis(d)?])

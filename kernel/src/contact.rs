@@ -185,7 +185,7 @@ fn rebuild(lanes: &Lanes, frame: &Frame<'_>) -> Candidates {
 #[inline(always)]
 fn of_slots(lanes: &Lanes, channel: Channel) -> Four {
     let start = channel.lane(Slot::Tread);
-    Four::new(lanes.0.get(start..start + 4).and_then(<[_]>::first_chunk).copied().unwrap_or_default())
+    Four::load(lanes.0.get(start..start + 4).and_then(<[_]>::first_chunk).unwrap_or(&[0.0; 4]))
 }
 
 /// Contact point in the track frame of the canonical wheel.

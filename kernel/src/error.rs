@@ -106,7 +106,7 @@ pub enum TableError {
         /// Its bins.
         bins: u16,
     },
-    /// An axis node is not a number, beyond plausible values, or not above the one before.
+    /// An axis node is not an `f32` number, beyond plausible values, or not above the one before.
     AxisNode {
         /// The axis.
         axis: AxisName,
@@ -114,6 +114,15 @@ pub enum TableError {
         index: usize,
         /// Its value, m or rad.
         value: f32,
+    },
+    /// What stands beside an axis node is not the reciprocal of the distance to the next, or 0 beside the last.
+    AxisReciprocal {
+        /// The axis.
+        axis: AxisName,
+        /// The node's index.
+        index: usize,
+        /// What stands beside it, 1/m or 1/rad.
+        found: f64,
     },
     /// An axis bin does not lead to the cell its nodes say, or holds two nodes.
     AxisBin {
@@ -209,6 +218,9 @@ impl fmt::Display for TableError {
                 f,
                 "{axis} axis: node {index} is {value}, not a number above the node before and within plausible bounds"
             ),
+            Self::AxisReciprocal { axis, index, found } => {
+                write!(f, "{axis} axis: node {index} has the reciprocal {found}, its cell's width says otherwise")
+            }
             Self::AxisBin { axis, index, found } => {
                 write!(f, "{axis} axis: bin {index} leads to cell {found}, its nodes say otherwise")
             }

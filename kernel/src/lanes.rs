@@ -19,8 +19,8 @@ pub(crate) struct Mask([bool; 2]);
 
 impl Four {
     #[inline(always)]
-    pub(crate) fn new(numbers: [f32; 4]) -> Self {
-        Self(numbers)
+    pub(crate) fn load(numbers: &[f32; 4]) -> Self {
+        Self(*numbers)
     }
 
     /// Four times the same.
@@ -276,7 +276,7 @@ mod tests {
                 let (parts, whole) = (x.integer_parts(), v.integer_parts());
                 assert_eq!((parts.0, parts.1.numbers()), (whole.0, whole.1.numbers()));
                 let numbers = [a, b, 0.5 * a, 3.0].map(single);
-                let (x, v) = (Four(numbers), simd::Four::new(numbers));
+                let (x, v) = (Four(numbers), simd::Four::load(&numbers));
                 let (y, w) = (Four::all(single(b)), simd::Four::all(single(b)));
                 let zero = (Four::all(0.0), simd::Four::all(0.0));
                 let pairs = [
@@ -295,7 +295,7 @@ mod tests {
                 assert_eq!(x.above_zero(), v.above_zero());
             }
         }
-        assert_eq!(Four::new([1.0; 4]).numbers(), [1.0; 4]);
+        assert_eq!(Four::load(&[1.0, 2.0, 3.0, 4.0]).numbers(), simd::Four::load(&[1.0, 2.0, 3.0, 4.0]).numbers());
         assert_eq!(Two::new([2.0; 2]).numbers(), Two::all(2.0).numbers());
     }
 }

@@ -27,6 +27,8 @@ pub const HEADER_AT: usize = 20;
 pub const HEADER_LIMIT: usize = 65_536;
 /// Alignment of the sections from the image's start, bytes.
 pub const ALIGNMENT: usize = 64;
+/// Bytes of an axis node: its coordinate and the reciprocal of the distance to the next, `f64` each.
+pub const NODE: usize = 16;
 /// Bytes of a record.
 pub const RECORD: usize = 64;
 
@@ -54,7 +56,7 @@ pub struct SideSections {
 /// All sections of an image, as byte ranges.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Sections {
-    /// `f32` nodes of the four axes.
+    /// Nodes of the four axes, [`NODE`] bytes each.
     pub nodes: [Range<usize>; 4],
     /// `u16` search maps of the four axes.
     pub bins: [Range<usize>; 4],
@@ -108,7 +110,7 @@ impl Sections {
         let [axes_gap, right_maps_gap, right_records_gap, left_maps_gap, left_records_gap] = &mut sections.padding;
         *axes_gap = cursor.align();
         for (range, axis) in sections.nodes.iter_mut().zip(axes) {
-            *range = cursor.take(size_of::<f32>(), &[usize::from(axis.nodes)]);
+            *range = cursor.take(NODE, &[usize::from(axis.nodes)]);
         }
         for (range, axis) in sections.bins.iter_mut().zip(axes) {
             *range = cursor.take(size_of::<u16>(), &[usize::from(axis.bins)]);
@@ -138,20 +140,20 @@ mod tests {
     fn sections_follow_each_other_aligned() {
         let s = Sections::new(100, &counts([2, 2, 2, 3]), [2, 1, 1], 2).unwrap();
         assert_eq!(s.padding[0], 120..128);
-        assert_eq!(s.nodes[0], 128..136);
-        assert_eq!(s.nodes[3], 152..164);
-        assert_eq!(s.bins[3], 170..172);
-        assert_eq!(s.padding[1], 172..192);
-        assert_eq!(s.sides[0], SideSections { rigid_roll: 192..216, rigid_vertical: 216..264, records: 320..1856 });
-        assert_eq!(s.sides[1].records, 1984..3520);
-        assert_eq!(s.total, 3520);
-        assert_eq!(Sections::new(100, &counts([2, 2, 2, 3]), [2, 1, 1], 1).unwrap().total, 1856);
+        assert_eq!(s.nodes[0], 128..160);
+        assert_eq!(s.nodes[3], 224..272);
+        assert_eq!(s.bins[3], 278..280);
+        assert_eq!(s.padding[1], 280..320);
+        assert_eq!(s.sides[0], SideSections { rigid_roll: 320..344, rigid_vertical: 344..392, records: 448..1984 });
+        assert_eq!(s.sides[1].records, 2112..3648);
+        assert_eq!(s.total, 3648);
+        assert_eq!(Sections::new(100, &counts([2, 2, 2, 3]), [2, 1, 1], 1).unwrap().total, 1984);
     }
 
     #[test]
     fn order_of_the_padding() {
         let s = Sections::new(100, &counts([2, 2, 2, 3]), [2, 1, 1], 2).unwrap();
-        assert_eq!(s.padding, [120..128, 172..192, 264..320, 1856..1856, 1928..1984]);
+        assert_eq!(s.padding, [120..128, 280..320, 392..448, 1984..1984, 2056..2112]);
     }
 
     #[test]

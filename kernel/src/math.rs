@@ -42,11 +42,12 @@ impl Angle {
         let x = angles.at_least(all(-ANGLE_LIMIT)).at_most(limit);
         let t = x * x;
         // sin x = x - x^3/3! + x^5/5! - x^7/7! + x^9/9!
-        let tail = t * (all(-1.0 / 5040.0) + t * all(1.0 / 362_880.0));
-        let sin = x + x * (t * (all(-1.0 / 6.0) + t * (all(1.0 / 120.0) + tail)));
+        let squared = t * t;
+        let (low, high) = (all(-1.0 / 6.0) + t * all(1.0 / 120.0), all(-1.0 / 5040.0) + t * all(1.0 / 362_880.0));
+        let sin = x + x * (t * (low + squared * high));
         // 1 - cos x = x^2/2! - x^4/4! + x^6/6! - x^8/8! + x^10/10!
-        let tail = t * (all(-1.0 / 40_320.0) + t * all(1.0 / 3_628_800.0));
-        let versine = t * (all(0.5) + t * (all(-1.0 / 24.0) + t * (all(1.0 / 720.0) + tail)));
+        let (low, high) = (all(-1.0 / 24.0) + t * all(1.0 / 720.0), all(-1.0 / 40_320.0) + t * all(1.0 / 3_628_800.0));
+        let versine = t * (all(0.5) + t * (low + squared * high));
         let cos = all(1.0) - versine;
         let limited = x.differs(angles).bits();
         let ([x0, x1], [s0, s1], [c0, c1]) = (x.numbers(), sin.numbers(), cos.numbers());

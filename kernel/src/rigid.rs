@@ -1,6 +1,6 @@
 //! The rigid maps: where the wheelset touches both rails without indentation, by interpolation.
 
-use crate::axis::{Axis, AxisPair, Place, Places, index, numbers};
+use crate::axis::{Axis, AxisPair, Place, Places, index};
 use crate::corners::{four_pairs, two_pairs};
 use crate::displacement::{Displacement, pose_with};
 use crate::header::MAX_PARTS;
@@ -81,6 +81,12 @@ impl core::fmt::Debug for RigidMaps<'_> {
 
 /// Values of a cell that a checked map does not have.
 const NOTHING: &[[u8; 4]; 2] = &[[0; 4]; 2];
+
+/// Two `f32` from their bytes.
+#[inline(always)]
+fn numbers([low, high]: &[[u8; 4]; 2]) -> Two {
+    Two::new([f64::from(f32::from_le_bytes(*low)), f64::from(f32::from_le_bytes(*high))])
+}
 
 /// a + t (b - a)
 #[inline(always)]

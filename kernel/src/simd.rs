@@ -25,11 +25,13 @@ pub(crate) struct Four(__m128);
 pub(crate) struct Two(__m128d);
 
 // SAFETY of every block up to the end of this file: the instructions are SSE2's, and this module is compiled only where the
-// whole program may use SSE2. Only the prefetch touches memory, see there.
+// whole program may use SSE2. Only the load and the prefetch touch memory, see there.
 impl Four {
+    /// By one load, where the compiler would put overlapping ones together from parts.
     #[inline(always)]
-    pub(crate) fn new([a, b, c, d]: [f32; 4]) -> Self {
-        Self(unsafe { _mm_set_ps(d, c, b, a) })
+    pub(crate) fn load(numbers: &[f32; 4]) -> Self {
+        // SAFETY: SSE2 as above; the pointer is that of four `f32`, and the load asks for no alignment.
+        Self(unsafe { _mm_loadu_ps(numbers.as_ptr()) })
     }
 
     #[inline(always)]

@@ -13,6 +13,7 @@ use crate::error::TableError;
 use crate::flags::Flags;
 use crate::header::{Header, SideHeader};
 use crate::layout::{RECORD, Sections};
+use crate::math::Two;
 use crate::pose::{Canonical, Pose, Side, WheelGeometry, checked};
 use crate::rigid::{Coordinates, RigidMaps};
 
@@ -260,7 +261,8 @@ impl<'a> ContactTable<'a> {
         let [.., axis] = &self.axes;
         let vertical = axis.locate(vertical);
         // The flags of the four axes are the lowest four bits, in the axes' order.
-        let section = u8::from(roll_offset.clamped) | u8::from(vertical.clamped) << 1;
+        let section = Two::new([roll_offset.fraction, vertical.fraction]);
+        let section = section.differs(Two::new([roll_offset.unclamped, vertical.unclamped])).bits();
         let flags = Flags::of_axes(plane.clamped | section << 2);
         (Cell::new(plane, roll_offset, &vertical, self.strides), flags)
     }

@@ -108,8 +108,12 @@ fn damage(image: &mut Vec<u8>, input: &mut Input<'_>) {
             }
         }
         4 => {
-            let at = place(&sections.nodes[input.below(4)], 4, input);
-            put_single(image, at, input);
+            let at = place(&sections.nodes[input.below(4)], 8, input);
+            let near = image.get(at..).and_then(<[u8]>::first_chunk).map_or(0.0, |bytes| f64::from_le_bytes(*bytes));
+            // A node is an `f32`; a reciprocal is not.
+            let value = input.number(near);
+            let value = if input.byte().is_multiple_of(2) { value } else { f64::from(value as f32) };
+            put(image, at, &value.to_le_bytes());
         }
         5 => {
             let at = place(&sections.bins[input.below(4)], 2, input);

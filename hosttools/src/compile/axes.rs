@@ -113,7 +113,8 @@ impl Axes {
     pub(super) fn bytes(&self, sides: usize) -> usize {
         let [lateral, yaw, roll] = self.rigid.each_ref().map(Vec::len);
         let maps = 4 * lateral * yaw * (roll + 1);
-        let axes: usize = self.all().iter().map(|nodes| 4 * nodes.len() + 2 * BINS_A_NODE * nodes.len()).sum();
+        let axes: usize =
+            self.all().iter().map(|nodes| (flangeway::layout::NODE + 2 * BINS_A_NODE) * nodes.len()).sum();
         OVERHEAD + axes + sides * (maps + flangeway::layout::RECORD * self.nodes())
     }
 
