@@ -41,7 +41,7 @@ const LEAST_GAIN: f64 = 0.02;
 /// Steps in a row without that gain before the search gives up: a kink of the force may need two or three nodes.
 const PATIENCE: usize = 6;
 /// How much less the 95 % quantile of fitted node values can be than that of sampled ones, which the search looks at.
-const FIT_GAIN: f64 = 4.0;
+const FIT_GAIN: f64 = 2.5;
 
 /// An axis, by its place in a trial's coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

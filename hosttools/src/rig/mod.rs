@@ -12,7 +12,7 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
-use flangeway::{ContactTable, Pose, SLOTS, Side};
+use flangeway::{ContactTable, Contacts, Pose, SLOTS, Side};
 
 pub use clock::{Clock, PortableClock, SystemClock};
 pub use realtime::Realtime;
@@ -90,8 +90,11 @@ impl Settings {
 pub struct Wheels<'a> {
     table: &'a ContactTable<'a>,
     poses: &'a [Pose],
-    /// Side, and row at period 0.
-    wheels: Vec<(Side, usize)>,
+    /// Row of each wheel at period 0.
+    starts: Vec<usize>,
+    /// The wheels of a step, and what is found of them: room made once.
+    wheels: Vec<(Side, Pose)>,
+    found: Vec<Contacts>,
     /// What was found.
     pub tally: Tally,
 }
@@ -112,25 +115,29 @@ impl<'a> Wheels<'a> {
     #[must_use]
     pub fn new(table: &'a ContactTable<'a>, poses: &'a [Pose], count: usize) -> Self {
         let sets = count.div_ceil(2).max(1);
-        let wheel = |i: usize| (Side::ALL[i % 2], i / 2 * poses.len() / sets);
-        Self { table, poses, wheels: (0..count).map(wheel).collect(), tally: Tally::default() }
+        Self {
+            table,
+            poses,
+            starts: (0..count).map(|i| i / 2 * poses.len() / sets).collect(),
+            wheels: (0..count).map(|i| (Side::ALL[i % 2], Pose::default())).collect(),
+            found: vec![Contacts::NONE; count],
+            tally: Tally::default(),
+        }
     }
 
-    /// The step of a period: records fetched ahead for all wheels, then the lookups of all wheels. Allocates nothing.
+    /// The step of a period: all wheels in one call, which asks for their records before it needs them. Allocates
+    /// nothing.
     pub fn step(&mut self, period: u64) {
         let row = (period % self.poses.len() as u64) as usize;
-        let pose = |start: usize| {
+        for ((_, pose), start) in self.wheels.iter_mut().zip(&self.starts) {
             let at = row + start;
-            &self.poses[if at < self.poses.len() { at } else { at - self.poses.len() }]
-        };
-        for &(side, start) in &self.wheels {
-            self.table.prefetch(side, pose(start));
+            *pose = self.poses[if at < self.poses.len() { at } else { at - self.poses.len() }];
         }
-        for &(side, start) in &self.wheels {
-            let found = black_box(self.table.contacts(side, pose(start)));
+        self.table.contacts_many(&self.wheels, &mut self.found);
+        for found in black_box(&self.found) {
             self.tally.lookups += 1;
             self.tally.remarks += u64::from(!found.flags.is_empty());
-            for contact in &found {
+            for contact in found {
                 self.tally.contacts[contact.slot.index()] += 1;
             }
         }
