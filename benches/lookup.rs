@@ -179,11 +179,10 @@ fn show([largest, rms]: [f64; 2]) -> String {
 fn main() {
     let table = table();
     let plain = Plain::new(&table);
-    let fields: Vec<Vec<f32>> = Slot::ALL
-        .iter()
-        .flat_map(|slot| (0..FIELDS).map(|i| slot.index() * CHANNELS + i))
-        .map(|i| plain.field(i))
-        .collect();
+    // The lanes of the fields, slot by slot.
+    let field_lanes: Vec<usize> =
+        Slot::ALL.iter().flat_map(|slot| Channel::ALL[..FIELDS].iter().map(|channel| channel.lane(*slot))).collect();
+    let fields: Vec<Vec<f32>> = field_lanes.iter().map(|lane| plain.field(*lane)).collect();
     let fields: Vec<MultilinearRegular<'_, f32, 4>> = fields
         .iter()
         .map(|values| MultilinearRegular::new(plain.counts, plain.first, plain.step, values).expect("a grid"))
@@ -242,8 +241,8 @@ fn main() {
             for pose in (0..repeats).flat_map(|_| &poses) {
                 let fields = interpn(plain.coordinates(black_box(pose)));
                 let mut record = Record([0.0; 32]);
-                for (slot, fields) in record.0.chunks_mut(CHANNELS).zip(fields.chunks(FIELDS)) {
-                    slot[..FIELDS].copy_from_slice(fields);
+                for (lane, value) in field_lanes.iter().zip(fields) {
+                    record.0[*lane] = value;
                 }
                 black_box(plain.rebuild(pose, &record));
             }
