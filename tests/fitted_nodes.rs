@@ -70,3 +70,18 @@ fn fitted_nodes_stay_physical() {
         assert!((0.5..1.5).contains(&(channel.measured_rms / channel.predicted_rms)), "{channel:?}");
     }
 }
+
+#[test]
+fn an_axis_that_ends_without_contact_leaves_its_samples() {
+    let mut recipe = common::built_in();
+    let pair = Pair::build(&recipe).unwrap();
+    recipe.grid.vertical_m.range = [-1e-4, 0.0];
+    let [sampled, fitted] = [NodeValues::Sampled, NodeValues::Fitted].map(|values| {
+        recipe.grid.node_values = values;
+        compile(&recipe, &pair, Some("5x2x2x2".parse().unwrap())).unwrap().image
+    });
+    let [sampled, fitted] = [&sampled, &fitted].map(|image| ContactTable::new(image).unwrap());
+    for node in (0..5).flat_map(|u| (0..2).map(move |vertical| [u, 1, 0, vertical])) {
+        assert_eq!(sampled.node_record(Side::Right, node), fitted.node_record(Side::Right, node));
+    }
+}

@@ -95,6 +95,12 @@ pub fn coefficients(ratio: f64) -> Coefficients {
     Coefficients { normal: 2.0 * PI * long / (3.0 * k), long, short }
 }
 
+/// Normal force N = C δ₊^1.5 (N) of a stiffness C (N m^-1.5) and an indentation δ (m), none of a gap.
+pub fn normal_force(stiffness: f64, indentation: f64) -> f64 {
+    let delta = indentation.max(0.0);
+    stiffness * delta * delta.sqrt()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

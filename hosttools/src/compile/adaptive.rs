@@ -39,7 +39,7 @@ const LEAST_LATERAL_STEP: usize = 4;
 /// A step must improve the score by this much for each unit of the logarithm of bytes.
 const LEAST_GAIN: f64 = 0.02;
 /// Steps in a row without that gain before the search gives up: a kink of the force may need two or three nodes.
-const PATIENCE: usize = 6;
+const PATIENCE: usize = 7;
 /// How much less the 95 % quantile of fitted node values can be than that of sampled ones, which the search looks at.
 const FIT_GAIN: f64 = 2.5;
 
@@ -141,7 +141,7 @@ impl Search {
             };
             match next {
                 None => return Ok((kept.axes, Bound::Bytes)),
-                Some(_) if idle > PATIENCE => return Ok((kept.axes, Bound::Resolved)),
+                Some(_) if idle >= PATIENCE => return Ok((kept.axes, Bound::Resolved)),
                 Some(next) => now = next,
             }
             best = Some(kept);

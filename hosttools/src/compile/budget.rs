@@ -15,8 +15,7 @@ use rayon::prelude::*;
 use super::quantise;
 use super::stencil::{Beyond, Place, Stencil};
 use super::{Assembled, CompiledSide};
-use crate::error::{Error, Result};
-use crate::pair::Pair;
+use crate::hertz;
 use crate::verify::{self, LOADS, Quantiles};
 
 /// The parts of the relative force error, and what each channel's integers cost.
@@ -60,17 +59,15 @@ struct Parts {
     contacts: usize,
 }
 
-/// Measures the budget of a table over `count` poses.
-pub(super) fn measure(table: &Assembled, pair: &Pair, count: usize, seed: u64) -> Result<Budget> {
-    let image = ContactTable::new(&table.image).map_err(|e| Error::field("", "table", e.to_string()))?;
+/// The budget of a table over samples of it; `view` is the kernel's of its image.
+pub(super) fn measure(table: &Assembled, view: &ContactTable<'_>, samples: &[verify::Sample]) -> Budget {
     let stencil = Stencil::new(&table.axes);
-    let sides = Side::ALL.into_iter().zip(&table.sides);
-    let parts: Vec<Parts> = sides
-        .flat_map(|(side, data)| {
-            let samples = verify::sample(&image, pair, side, count / table.sides.len(), seed);
-            samples.par_iter().map(|sample| parts(&image, data, &stencil, sample)).collect::<Vec<_>>()
-        })
-        .collect();
+    let (right, left) = (table.sides.first(), table.sides.last());
+    let part = |sample: &verify::Sample| {
+        let side = if sample.side == Side::Left { left } else { right };
+        side.map(|side| parts(view, side, &stencil, sample))
+    };
+    let parts: Vec<Parts> = samples.par_iter().filter_map(part).collect();
     let of = |value: fn(&Parts) -> f64| Quantiles::of(parts.iter().map(value).collect());
     let contacts = parts.iter().map(|p| p.contacts).sum::<usize>().max(1) as f64;
     let channels = Channel::ALL.map(|channel| {
@@ -84,13 +81,13 @@ pub(super) fn measure(table: &Assembled, pair: &Pair, count: usize, seed: u64) -
         }
     });
     let predicted = parts.iter().map(|p| p.predicted).sum::<f64>() / parts.len().max(1) as f64;
-    Ok(Budget {
+    Budget {
         grid: of(|p| p.grid),
         quantisation: of(|p| p.quantisation),
         quantisation_predicted_rms: predicted.sqrt(),
         arithmetic: of(|p| p.arithmetic),
         channels: channels.into(),
-    })
+    }
 }
 
 fn parts(image: &ContactTable<'_>, data: &CompiledSide, stencil: &Stencil, sample: &verify::Sample) -> Parts {
@@ -151,6 +148,5 @@ fn dequantised(scale: &Scale, lane: i16) -> f64 {
 
 /// N = C δ^1.5 (N)
 fn force(channels: &[f64; CHANNELS]) -> f64 {
-    let delta = channels[0].max(0.0);
-    channels[1].max(0.0) * delta * delta.sqrt()
+    hertz::normal_force(channels[1].max(0.0), channels[0])
 }

@@ -13,7 +13,7 @@ mod sampler;
 mod stencil;
 mod trial;
 
-use flangeway::{ErrorFigures, Header, LANES, SLOTS, Scales, Side, SideHeader, Slot};
+use flangeway::{ContactTable, ErrorFigures, Header, LANES, SLOTS, Scales, Side, SideHeader, Slot};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
@@ -29,8 +29,9 @@ use crate::recipe::{NodeValues, Nodes, Recipe};
 use crate::verify;
 use sampler::Sampler;
 
-/// Poses sampled for the error figures that the compiler writes into the header, and their seed.
+/// Poses and lines for the error figures that the compiler writes into the header, and their seed.
 const FIGURE_SAMPLES: usize = 4000;
+const FIGURE_LINES: usize = 200;
 const FIGURE_SEED: u64 = 1;
 
 /// A finished table and what it took.
@@ -62,8 +63,10 @@ pub fn compile(recipe: &Recipe, pair: &Pair, uniform: Option<Uniform>) -> Result
         None => (Axes::coarsest(recipe, pair.sides())?, Bound::Counts),
     };
     let table = compiler.assemble(axes, grid.node_values)?;
-    let errors = verify::figures(&table.image, pair, FIGURE_SAMPLES, FIGURE_SEED)?;
-    let budget = budget::measure(&table, pair, FIGURE_SAMPLES, FIGURE_SEED)?;
+    let view = ContactTable::new(&table.image).map_err(|e| Error::field("", "table", e.to_string()))?;
+    let measured = verify::measure(&view, table.image.len(), pair, FIGURE_SAMPLES, FIGURE_LINES, FIGURE_SEED);
+    let errors = measured.report.figures();
+    let budget = budget::measure(&table, &view, &measured.samples);
     Ok(Compiled { image: compiler.image(&table, errors)?, axes: table.axes, errors, budget, bound })
 }
 

@@ -87,8 +87,7 @@ impl SlotState {
 
     /// Normal force (N): N = C δ^1.5 where δ > 0.
     pub fn normal_force(&self) -> f64 {
-        let delta = self.indentation.max(0.0);
-        self.stiffness * delta * delta.sqrt()
+        hertz::normal_force(self.stiffness, self.indentation)
     }
 }
 

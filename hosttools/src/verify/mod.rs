@@ -33,7 +33,6 @@ pub use statistics::{Quantiles, quantile};
 
 use crate::contact::{SLOTS, SlotState};
 use crate::contacts::track_position;
-use crate::error::{Error, Result};
 use crate::pair::Pair;
 use crate::progress;
 
@@ -41,8 +40,6 @@ use crate::progress;
 pub const LOADS: [f64; 2] = [5e3, 150e3];
 /// Share of the total force from which on a contact counts as carrying.
 pub(crate) const CARRYING: f64 = 0.02;
-/// Lines drawn for the continuity figures in a table's header.
-const FIGURE_LINES: usize = 200;
 
 /// One sampled pose, by the direct solver and by the table.
 #[derive(Debug, Clone, Copy)]
@@ -99,6 +96,23 @@ pub struct Report {
     pub continuity: f64,
     /// The same of the direct solver.
     pub continuity_direct: f64,
+}
+
+impl Report {
+    /// The figures that a compiler writes into the header.
+    pub fn figures(&self) -> ErrorFigures {
+        let force = &self.normal_force;
+        ErrorFigures {
+            samples: u32::try_from(self.samples).unwrap_or(u32::MAX),
+            seed: self.seed,
+            force_rms: force.rms as f32,
+            force_median: force.median as f32,
+            force_p95: force.p95 as f32,
+            force_p99: force.p99 as f32,
+            force_max: force.max as f32,
+            continuity: self.continuity as f32,
+        }
+    }
 }
 
 /// Draws poses and compares the table with the direct solver on one side.
@@ -233,24 +247,4 @@ pub fn report(
 ) -> (Report, Vec<Sample>) {
     let Measured { report, samples, .. } = measure(table, bytes, pair, count, lines, seed);
     (report, samples)
-}
-
-/// The figures that a compiler writes into the header.
-///
-/// # Errors
-/// When the image is no table.
-pub fn figures(image: &[u8], pair: &Pair, count: usize, seed: u64) -> Result<ErrorFigures> {
-    let table = ContactTable::new(image).map_err(|e| Error::field("", "table", e.to_string()))?;
-    let (report, _) = report(&table, image.len(), pair, count, FIGURE_LINES, seed);
-    let force = report.normal_force;
-    Ok(ErrorFigures {
-        samples: u32::try_from(report.samples).unwrap_or(u32::MAX),
-        seed,
-        force_rms: force.rms as f32,
-        force_median: force.median as f32,
-        force_p95: force.p95 as f32,
-        force_p99: force.p99 as f32,
-        force_max: force.max as f32,
-        continuity: report.continuity as f32,
-    })
 }

@@ -27,6 +27,7 @@ use super::axes::Axes;
 use super::quantise::{self, WIDEST_GAP};
 use super::stencil::{Beyond, Place, Stencil};
 use crate::contact::SlotState;
+use crate::hertz::normal_force;
 use crate::verify::LOADS;
 use least_squares::{Gain, Objective, Values, fit as least_squares};
 pub(super) use points::Drawing;
@@ -185,6 +186,5 @@ impl Fit {
 
 /// δ^1.5 of an indentation, 0 of a gap.
 fn power_1_5(delta: f64) -> f64 {
-    let delta = delta.max(0.0);
-    delta * delta.sqrt()
+    normal_force(1.0, delta)
 }

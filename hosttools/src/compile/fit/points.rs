@@ -8,6 +8,7 @@ use crate::compile::axes::{Axes, REFINEMENT};
 use crate::compile::quantise;
 use crate::compile::stencil::Place;
 use crate::error::Result;
+use crate::hertz;
 use crate::image::{OwnedAxis, OwnedRigidMaps};
 use crate::pair::Pair;
 use crate::progress;
@@ -37,11 +38,10 @@ pub(super) struct Point {
 }
 
 impl Point {
-    /// Normal force of a slot (N): N = C δ^1.5 where δ > 0.
+    /// Normal force of a slot (N).
     pub(super) fn slot_force(&self, slot: usize) -> f64 {
         let Some([delta, stiffness, ..]) = self.slots[slot] else { return 0.0 };
-        let delta = f64::from(delta).max(0.0);
-        f64::from(stiffness) * delta * delta.sqrt()
+        hertz::normal_force(f64::from(stiffness), f64::from(delta))
     }
 
     /// Total normal force (N).
@@ -90,8 +90,11 @@ impl<'a> Drawing<'a> {
         })
     }
 
-    /// All poses; `error` tells how far the table is off at one.
+    /// All poses; `error` tells how far the table is off at one. None where the vertical axis ends without contact.
     pub(super) fn points(&self, error: impl Fn(&Place, &Point) -> f64 + Sync) -> Points {
+        if self.highest() <= 0.0 {
+            return Points::default();
+        }
         let [lateral, yaw, roll] = [0, 1, 2].map(|axis| self.nodes[axis].len() - 1);
         let cells: Vec<[usize; 3]> =
             (0..lateral * yaw * roll).map(|n| [n / (yaw * roll), n / roll % yaw, n % roll]).collect();
@@ -106,6 +109,12 @@ impl<'a> Drawing<'a> {
         let drawn: Vec<Vec<(Place, Point)>> = progress::parallel(&cells, "fitting", draw).collect();
         let (places, points) = drawn.into_par_iter().flatten_iter().unzip();
         Points { places, points }
+    }
+
+    /// Height (m) of the highest node above touching.
+    fn highest(&self) -> f64 {
+        let [.., vertical] = self.nodes;
+        vertical.last().copied().map_or(0.0, f64::from)
     }
 
     /// Poses of one cell: `columns`³ columns, one anywhere in each part of it.
@@ -138,8 +147,7 @@ impl<'a> Drawing<'a> {
 
     /// Poses at several heights, each given as 0 to 1 over the heights looked at.
     fn column(&self, at: &Coordinates, heights: [f64; HEIGHTS], weight: f32) -> Vec<(Place, Point)> {
-        let top = f64::from(self.nodes[3][self.nodes[3].len() - 1]);
-        let [low, high] = HEIGHT_SHARES.map(|share| share * top);
+        let [low, high] = HEIGHT_SHARES.map(|share| share * self.highest());
         let pose = self.maps.view().pose(self.pair.body(self.side).wheel().geometry(), at);
         let mut column = self.pair.column(self.side, &pose);
         let [lateral, yaw, roll, vertical] = self.axes.each_ref().map(OwnedAxis::view);
