@@ -1,6 +1,6 @@
 //! Kalker's creep coefficients.
 
-use crate::creep::{greater, lesser};
+use crate::math::{greater, lesser};
 
 /// Kalker's creep coefficients C_ij of an elliptic contact.
 ///
