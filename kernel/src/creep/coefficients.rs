@@ -23,6 +23,7 @@ pub struct Coefficients {
 const ROWS: usize = 19;
 
 /// C11, C22, C23, each at ν = 0, 0.25 and 0.5.
+#[expect(clippy::approx_constant, reason = "3.14 as printed is no π")]
 const TABLE: [[[f32; 3]; 3]; ROWS] = [
     [[2.51, 3.31, 4.85], [2.51, 2.52, 2.53], [0.334, 0.473, 0.731]],
     [[2.59, 3.37, 4.81], [2.59, 2.63, 2.66], [0.483, 0.603, 0.809]],

@@ -56,6 +56,9 @@ fn counted(law: Law, case: &Case, answer: &mut [f64; 3]) {
         Law::Fastsim20 => fastsim::<20, 20>(patch, &steel, creepages, *friction),
         Law::Wheelset => wheelset(case),
     };
+    if cfg!(feature = "broken") && forces.longitudinal > 0.0 {
+        black_box(forces.longitudinal * 2.0);
+    }
     *answer = [forces.longitudinal, forces.lateral, forces.spin_moment].map(f64::from);
     black_box(answer);
 }
