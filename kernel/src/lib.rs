@@ -76,7 +76,9 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod creep;
 pub mod layout;
+pub mod wheelset;
 
 mod axis;
 mod blend;

@@ -1,0 +1,185 @@
+//! The wheelset: from its motion to the creepages of a contact, from the forces of its contacts to the wrench on it.
+
+use nalgebra::Vector3;
+
+use crate::contact::Contact;
+use crate::creep::{CreepForces, Creepages};
+use crate::displacement::Attitude;
+use crate::math::{Two, at_least, sine_cosine};
+use crate::pose::{Pose, Side, WheelGeometry};
+
+/// Least speed that creepages are divided by, m/s: below it, creep forces fade into viscous ones, and at rest without
+/// rates there are none.
+pub const SPEED_FLOOR: f64 = 0.01;
+
+/// Largest magnitude of a state's number that is taken as one, in its SI unit.
+pub const STATE_LIMIT: f64 = 1e6;
+
+/// Rates of a [`Pose`], seen in the track frame that moves along with the wheelset.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Rates {
+    /// Rate of the lateral displacement, m/s.
+    pub lateral: f64,
+    /// Rate of yaw, rad/s.
+    pub yaw: f64,
+    /// Rate of the vertical displacement, m/s.
+    pub vertical: f64,
+    /// Rate of roll, rad/s.
+    pub roll: f64,
+}
+
+/// State of a wheelset as far as its contacts move by it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Motion {
+    /// Pose in the [track frame](crate#frame).
+    pub pose: Pose,
+    /// Rates of the pose.
+    pub rates: Rates,
+    /// Speed V along the track's centre line, forward, m/s.
+    pub speed: f64,
+    /// Angular speed ω about the axle, positive when rolling forward (V / r0 when free), rad/s.
+    pub spin: f64,
+    /// Curvature κ of the track's centre line, positive in a right-hand curve, 1/m.
+    pub track_curvature: f64,
+}
+
+/// Creepages of a contact: velocity of the wheel's material relative to the rail's at the contact point, in the
+/// contact's axes, divided by the speed.
+///
+/// Kalker (1990), 1.3; in components Iwnicki (ed.), Handbook of Railway Vehicle Dynamics (2006), chapter 4. The track
+/// frame moves with V and turns with V κ about z, so in it the rail runs backwards. With the axle's direction e, the
+/// point p of the contact and r from the wheelset's centre to it:
+///
+/// ```text
+/// e = (-sin ψ cos φ, cos ψ cos φ, sin φ)
+/// Ω = ψ' z + φ' (cos ψ, sin ψ, 0) - ω e
+/// v = (0, y', z') + Ω × r + V (1 - κ py, κ px, 0)
+/// t = (0, cos α, sin α)      n = x × t = (0, -sin α, cos α)
+/// ξ = v x / V      η = v·t / V      φ = (Ω + V κ z)·n / V
+/// ```
+///
+/// A wheelset that rolls on circles of its true radii has none but spin, φ = sin α / r: negative on the right rail's
+/// gauge side. Yaw ψ alone gives η = -ψ on the tread: the wheel rolls to the side it points to, which is the right when
+/// ψ > 0, while it is held back.
+///
+/// `position` is `f32`: its height above the rail plane, of millimetres, is rounded to 1e-10 m, and ξ by 3e-10 of it;
+/// across, 3e-8 m times yaw.
+///
+/// States that are no numbers, or beyond [`STATE_LIMIT`], give no creepages.
+#[must_use]
+pub fn creepages(geometry: &WheelGeometry, motion: &Motion, contact: &Contact) -> Creepages {
+    let Motion { pose, rates, speed, spin, track_curvature } = *motion;
+    let (sin, cos) = sine_cosine(f64::from(contact.angle));
+    let Attitude { yaw: psi, roll: phi } = Attitude::new(pose.yaw, pose.roll);
+    let point = contact.position.cast::<f64>();
+    let arm = arm(geometry, &pose, contact);
+    // Ω = ψ' z + φ' (cos ψ, sin ψ, 0) - ω e
+    let axle = Vector3::new(-psi.sin * phi.cos, psi.cos * phi.cos, phi.sin);
+    let turn = Vector3::new(rates.roll * psi.cos, rates.roll * psi.sin, rates.yaw) - axle * spin;
+    // v = (0, y', z') + Ω × r + V (1 - κ py, κ px, 0)
+    let track = Vector3::new(1.0 - track_curvature * point.y, track_curvature * point.x, 0.0) * speed;
+    let velocity = Vector3::new(0.0, rates.lateral, rates.vertical) + turn.cross(&arm) + track;
+    let turn_z = turn.z + speed * track_curvature;
+    let per_speed = 1.0 / at_least(speed.abs(), SPEED_FLOOR);
+    let longitudinal = velocity.x * per_speed;
+    let lateral = (velocity.y * cos + velocity.z * sin) * per_speed;
+    let about_normal = (turn_z * cos - turn.y * sin) * per_speed;
+    // By masks, so that no branch is made of it. Angles are clamped before they are used, so they are asked for here.
+    let limit = Two::all(STATE_LIMIT);
+    let inside = |x: f64, y: f64| Two::new([x, y]).abs().within(limit);
+    let valid = inside(speed, spin)
+        .and(inside(rates.lateral, rates.yaw))
+        .and(inside(rates.vertical, rates.roll))
+        .and(inside(track_curvature, f64::from(contact.angle)))
+        .and(inside(pose.lateral, pose.yaw))
+        .and(inside(pose.vertical, pose.roll))
+        .and(inside(point.x, point.y))
+        .and(inside(point.z, 0.0));
+    let ([longitudinal, lateral], [spin, _]) = (
+        Two::new([longitudinal, lateral]).where_all(valid).single(),
+        Two::new([about_normal, 0.0]).where_all(valid).single(),
+    );
+    Creepages { longitudinal, lateral, spin }
+}
+
+/// From the wheelset's centre, at (0, y, z - r0), to the contact point, m.
+#[inline(always)]
+fn arm(geometry: &WheelGeometry, pose: &Pose, contact: &Contact) -> Vector3<f64> {
+    contact.position.cast::<f64>() - Vector3::new(0.0, pose.lateral, pose.vertical - geometry.nominal_radius)
+}
+
+/// Force and moment on a wheelset in the track frame, about the wheelset's centre.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Wrench {
+    /// Force, N.
+    pub force: Vector3<f64>,
+    /// Moment about the wheelset's centre, N m.
+    pub moment: Vector3<f64>,
+}
+
+impl core::ops::Add for Wrench {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { force: self.force + other.force, moment: self.moment + other.moment }
+    }
+}
+
+impl core::iter::Sum for Wrench {
+    fn sum<I: Iterator<Item = Self>>(wrenches: I) -> Self {
+        wrenches.fold(Self::default(), |sum, wrench| sum + wrench)
+    }
+}
+
+/// Wrench of one contact on the wheelset: normal force, creep forces and spin moment. The contacts of both wheels add up
+/// by [`Sum`](core::iter::Sum).
+///
+/// ```text
+/// F = -N n + Fx x + Fy t        M = r × F + Mz n
+/// ```
+#[must_use]
+pub fn contact_wrench(geometry: &WheelGeometry, pose: &Pose, contact: &Contact, creep: &CreepForces) -> Wrench {
+    let (sin, cos) = sine_cosine(f64::from(contact.angle));
+    let (normal, lateral) = (f64::from(contact.normal_force), f64::from(creep.lateral));
+    let spin_moment = f64::from(creep.spin_moment);
+    // F = -N n + Fx x + Fy t
+    let force =
+        Vector3::new(f64::from(creep.longitudinal), normal * sin + lateral * cos, -normal * cos + lateral * sin);
+    // M = r × F + Mz n
+    let moment = arm(geometry, pose, contact).cross(&force) + Vector3::new(0.0, -sin, cos) * spin_moment;
+    Wrench { force, moment }
+}
+
+/// Guiding force and wheel load of one wheel.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct WheelLoads {
+    /// Guiding force Y of the wheel on its rail, positive outwards (as a flange presses), N.
+    pub guiding_force: f64,
+    /// Wheel load Q on the rail, positive down, N.
+    pub wheel_load: f64,
+}
+
+impl WheelLoads {
+    /// Loads of a wheel from the sum of its contacts' wrenches.
+    #[must_use]
+    pub fn new(side: Side, wheel: &Wrench) -> Self {
+        Self { guiding_force: -side.sign() * wheel.force.y, wheel_load: -wheel.force.z }
+    }
+
+    /// Y / Q; zero for a wheel without load.
+    #[must_use]
+    pub fn ratio(&self) -> f64 {
+        if self.wheel_load > 0.0 { self.guiding_force / self.wheel_load } else { 0.0 }
+    }
+}
+
+/// Nadal's limit of Y / Q for a flange of a contact angle (rad, its sign does not matter) and a friction coefficient:
+/// beyond it the flange may climb.
+///
+/// M. J. Nadal (1896), EN 14363: Y/Q = (tan β - μ) / (1 + μ tan β).
+#[must_use]
+pub fn nadal_limit(angle: f64, friction: f64) -> f64 {
+    let (sin, cos) = sine_cosine(angle.abs());
+    // Both times cos β, for steep flanges.
+    (sin - friction * cos) / (cos + friction * sin)
+}
