@@ -78,6 +78,9 @@ extern crate std;
 
 pub mod layout;
 
+#[cfg(any(test, all(target_arch = "arm", not(feature = "portable"))))]
+#[cfg_attr(target_arch = "arm", expect(unsafe_code, reason = "an instruction by name, see there"))]
+mod arm;
 mod axis;
 mod blend;
 mod channel;

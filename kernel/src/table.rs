@@ -283,7 +283,12 @@ impl<'a> SideData<'a> {
     /// Blended lanes in their units, by the vector instructions of the build's target. All give the same bits.
     #[inline(always)]
     fn blend(&self, cell: &Cell, lanes: &mut Lanes) {
-        #[cfg(not(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable"))))]
+        #[cfg(all(target_arch = "arm", not(feature = "portable")))]
+        crate::arm::blend(self.records, cell, &self.scales, lanes);
+        #[cfg(any(
+            not(any(target_arch = "arm", all(target_arch = "x86_64", target_feature = "sse2"))),
+            feature = "portable"
+        ))]
         crate::blend::portable(self.records, cell, &self.scales, lanes);
         #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
         crate::simd::blend(self.records, cell, &self.scales, lanes);
