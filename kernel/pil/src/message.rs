@@ -45,6 +45,7 @@ pub fn sides(bits: u8) -> impl Iterator<Item = Side> {
 }
 
 /// Board to host.
+#[expect(clippy::large_enum_variant, reason = "nothing to box it in")]
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Answer<'a> {
     /// To a hello.

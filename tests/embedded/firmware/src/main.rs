@@ -11,7 +11,8 @@ use core::hint::black_box;
 
 use cortex_m_rt::entry;
 use cortex_m_semihosting::debug;
-use flangeway::{Contact, ContactTable, Contacts, Pose, SLOTS, Side};
+use flangeway::{ContactTable, Contacts, Pose, SLOTS, Side};
+use flangeway_pil::ContactNumbers;
 
 use counter::Counter;
 use semihosting::{File, Output};
@@ -43,7 +44,7 @@ fn nothing(table: &ContactTable<'_>, side: Side, pose: &Pose, contacts: &mut Con
 #[inline(never)]
 fn thousand(table: &ContactTable<'_>, side: Side, pose: &Pose, contacts: &mut Contacts) {
     counter::thousand();
-    nothing(table, side, pose, contacts);
+    black_box((table, side, pose, contacts));
 }
 
 #[entry]
@@ -57,20 +58,22 @@ fn main() -> ! {
 /// Everything; none where something is missing.
 fn run() -> Option<()> {
     let counter = Counter::start(cortex_m::Peripherals::take()?.SYST);
-    let tables = [ContactTable::new(flangeway_tables::S1002_60E1_40_TABLE).ok()?, ContactTable::new(THREE).ok()?];
-    let check_stack = stack::used();
-    let (poses, answers) = (File::open("poses.bin\0")?, Output::open()?);
+    let mut tables = None;
+    let check_stack = stack::used_by(|| {
+        tables = ContactTable::new(flangeway_tables::S1002_60E1_40_TABLE).ok().zip(ContactTable::new(THREE).ok());
+    });
+    let tables: [ContactTable<'static>; 2] = tables?.into();
+    let (poses, mut answers) = (File::open("poses.bin\0")?, Output::open()?);
     let mut pose = [0; POSE];
     let mut lookup_stack = 0;
     let [table, _] = &tables;
-    let floor = ticks(&counter, nothing, table, Side::Right, &Pose::default(), &mut Contacts::NONE);
-    let calibration = ticks(&counter, thousand, table, Side::Right, &Pose::default(), &mut Contacts::NONE);
+    let mut contacts = Contacts::NONE;
+    let mut without_lookup = |call| ticks(&counter, call, table, Side::Right, &Pose::default(), &mut contacts);
+    let (floor, calibration) = (without_lookup(nothing), without_lookup(thousand));
     while poses.read(&mut pose) {
         let (table, side, pose) = parse(&pose, &tables)?;
         let mut contacts = Contacts::NONE;
-        stack::paint();
-        lookup(table, side, &pose, &mut contacts);
-        lookup_stack = lookup_stack.max(stack::used_below_caller());
+        lookup_stack = lookup_stack.max(stack::used_by(|| lookup(table, side, &pose, &mut contacts)));
         let ticks = ticks(&counter, lookup, table, side, &pose, &mut contacts);
         answers.write(&answer(counter::instructions(ticks - floor), &contacts))?;
     }
@@ -96,7 +99,10 @@ fn ticks(
 }
 
 /// Table, side and pose from their bytes.
-fn parse<'a>(bytes: &[u8; POSE], tables: &'a [ContactTable<'static>; 2]) -> Option<(&'a ContactTable<'static>, Side, Pose)> {
+fn parse<'a>(
+    bytes: &[u8; POSE],
+    tables: &'a [ContactTable<'static>; 2],
+) -> Option<(&'a ContactTable<'static>, Side, Pose)> {
     let ([table, side], numbers) = bytes.split_first_chunk()?;
     let number = |i: usize| numbers.as_chunks().0.get(i).copied().map(f64::from_le_bytes);
     let pose = Pose { lateral: number(0)?, yaw: number(1)?, vertical: number(2)?, roll: number(3)? };
@@ -110,17 +116,17 @@ fn answer(instructions: u32, contacts: &Contacts) -> [u8; ANSWER] {
         let [a, b, c, d] = instructions.to_le_bytes();
         *head = [a, b, c, d, contacts.flags.bits(), contacts.list.len() as u8];
         for (contact, place) in contacts.iter().zip(rest.as_chunks_mut().0) {
-            *place = contact_bytes(contact);
+            *place = contact_bytes(&contact.into());
         }
     }
     bytes
 }
 
-fn contact_bytes(contact: &Contact) -> [u8; CONTACT] {
+fn contact_bytes(contact: &ContactNumbers) -> [u8; CONTACT] {
     let mut bytes = [0; CONTACT];
     if let Some((slot, places)) = bytes.split_first_mut() {
-        *slot = contact.slot.index() as u8;
-        for (number, place) in contact.numbers().iter().zip(places.as_chunks_mut().0) {
+        *slot = contact.slot;
+        for (number, place) in contact.numbers.iter().zip(places.as_chunks_mut().0) {
             *place = number.to_le_bytes();
         }
     }

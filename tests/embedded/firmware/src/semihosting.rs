@@ -1,6 +1,7 @@
 //! Files of the host.
 
-use cortex_m_semihosting::{hio, nr, syscall};
+use cortex_m_semihosting::hio::{HostStream, hstdout};
+use cortex_m_semihosting::{nr, syscall};
 
 /// A file to be read.
 pub(crate) struct File(usize);
@@ -23,14 +24,14 @@ impl File {
 }
 
 /// The host's standard output.
-pub(crate) struct Output(core::cell::RefCell<hio::HostStream>);
+pub(crate) struct Output(HostStream);
 
 impl Output {
     pub(crate) fn open() -> Option<Self> {
-        Some(Self(core::cell::RefCell::new(hio::hstdout().ok()?)))
+        hstdout().ok().map(Self)
     }
 
-    pub(crate) fn write(&self, bytes: &[u8]) -> Option<()> {
-        self.0.try_borrow_mut().ok()?.write_all(bytes).ok()
+    pub(crate) fn write(&mut self, bytes: &[u8]) -> Option<()> {
+        self.0.write_all(bytes).ok()
     }
 }
