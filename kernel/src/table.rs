@@ -67,6 +67,8 @@ impl<'a> ContactTable<'a> {
     ///
     /// # Errors
     /// Whatever is wrong with the image, see [`TableError`].
+    #[cold]
+    #[inline(never)]
     pub fn new(image: &'a [u8]) -> Result<Self, TableError> {
         let bytes = check::envelope(image)?;
         let header = check::header(bytes)?;
@@ -188,6 +190,7 @@ impl<'a> ContactTable<'a> {
     }
 
     /// [`ContactTable::contacts`] into a place of the caller's, which saves a copy.
+    #[inline]
     pub fn contacts_into(&self, side: Side, pose: &Pose, contacts: &mut Contacts) {
         self.finish(side, &self.prepare(side, pose), contacts);
     }

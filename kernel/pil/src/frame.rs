@@ -1,13 +1,13 @@
 //! Frames: `0 COBS(version, message, CRC-32C) 0`.
 
-use crc::{CRC_32_ISCSI, Crc};
+use crc::{CRC_32_ISCSI, Crc, NoTable};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 use crate::VERSION;
 
-/// The same checksum as a table's.
-static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
+/// The same checksum as a table's, without a table of a kilobyte: frames are short.
+static CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISCSI);
 
 /// Bytes of a message with version and checksum at most: two wheels of three contacts.
 pub const MESSAGE_LIMIT: usize = 1 + (1 + 3 * 5 + 1 + 2 * (2 + 3 * (1 + 48))) + CHECKSUM;
