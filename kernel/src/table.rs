@@ -190,7 +190,7 @@ impl<'a> ContactTable<'a> {
     }
 
     /// [`ContactTable::contacts`] into a place of the caller's, which saves a copy.
-    #[inline]
+    #[cfg_attr(target_arch = "arm", inline)]
     pub fn contacts_into(&self, side: Side, pose: &Pose, contacts: &mut Contacts) {
         self.finish(side, &self.prepare(side, pose), contacts);
     }

@@ -7,6 +7,7 @@ use core::hint::black_box;
 use cortex_m::singleton;
 use cortex_m_rt::entry;
 use flangeway::{ContactTable, Contacts, Pose, Side};
+use flangeway_mps2 as _;
 use panic_halt as _;
 
 #[entry]

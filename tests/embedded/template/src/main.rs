@@ -1,7 +1,8 @@
 //! Firmware to copy: a table in flash, poses in over a UART, contacts out. It speaks the protocol of `flangeway pil`
 //! (`kernel/pil/PROTOCOL.md`), so the host can drive it and check every bit.
 //!
-//! What to change for your board: `memory.x`, `uart.rs`, `clock.rs`, the table, the name.
+//! What to change for your board: the crate `flangeway-mps2` (the memory's layout and the interrupts: a peripheral access crate and
+//! your `memory.x`), `uart.rs`, `clock.rs`, the table, the name.
 #![no_std]
 #![no_main]
 
@@ -11,6 +12,7 @@ mod uart;
 use cortex_m::{Peripherals, singleton};
 use cortex_m_rt::entry;
 use flangeway::{ContactTable, layout};
+use flangeway_mps2 as _; // your board's peripheral access crate
 use flangeway_pil::{Board, Identity, Step, Unit, answer};
 use panic_halt as _;
 
