@@ -53,6 +53,13 @@ pub(crate) struct Lanes(pub(crate) [f32; LANES]);
 
 impl Lanes {
     pub(crate) const ZERO: Self = Self([0.0; LANES]);
+
+    /// Lanes to be written over. On ARM of a number that the compiler does not know to be zero: it would call a routine,
+    /// which takes several times as long as storing them.
+    #[inline(always)]
+    pub(crate) fn any() -> Self {
+        if cfg!(target_arch = "arm") { Self([core::hint::black_box(0.0); LANES]) } else { Self::ZERO }
+    }
 }
 
 /// Scales of the lanes: value = offset + step * blended lane, the step divided by what the weights sum to.

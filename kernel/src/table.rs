@@ -227,7 +227,7 @@ impl<'a> ContactTable<'a> {
         let Prepared { located, cell, flags } = prepared;
         // Through memory that the compiler cannot see through: it would interleave the blend's parts with what follows,
         // and spill more registers than it saves.
-        let mut lanes = Lanes::ZERO;
+        let mut lanes = Lanes::any();
         let lanes = black_box(&mut lanes);
         data.blend(cell, lanes);
         let frame = Frame {

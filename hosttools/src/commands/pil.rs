@@ -19,7 +19,7 @@ pub struct PilArgs {
     /// The board's table; the small one of S1002 on 60E1 by default
     #[arg(value_name = "T.fwt")]
     pub table: Option<PathBuf>,
-    /// Where the board is: tcp:HOST:PORT, or a serial device as DEVICE[:BAUD]
+    /// Where the board is: tcp:HOST:PORT, or a serial device as DEVICE:BAUD (115200 without)
     #[arg(long, value_name = "PORT")]
     pub port: Address,
     /// Recorded poses, in turn (CSV: y_m,yaw_rad,z_m,roll_rad); hunting and a curve by default
