@@ -42,9 +42,8 @@ pub(crate) fn blend(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales, 
     for (turn, (out, (offsets, steps))) in lanes.0.as_chunks_mut().0.iter_mut().zip(scales).enumerate() {
         let t = if turn == 0 { fractions(cell, 0) } else { fractions(cell, 1) };
         block::<0>(&edges, &weights, turn, t, [offsets, steps], out);
-        compiler_fence(Ordering::SeqCst);
         block::<1>(&edges, &weights, turn, fractions(cell, 1), [offsets, steps], out);
-        // The fences keep the compiler from interleaving the two, which would spill registers. They cost nothing.
+        // Keeps the compiler from interleaving turns, which would spill registers. It costs nothing.
         compiler_fence(Ordering::SeqCst);
     }
 }

@@ -123,9 +123,8 @@ pub fn pil<L: Line>(
     let bar = progress::bar(settings.exchanges, "pil");
     for (sequence, pose) in (0..settings.exchanges).zip(poses.iter().cycle()) {
         let Pose { lateral, yaw, vertical, roll } = *pose;
-        // Session and sequence: `check` has seen to it that they fit.
-        let pose_numbers = [lateral, yaw, vertical, roll];
-        let step = Step { session: 0, sequence: sequence as u32, sides: BOTH, pose: pose_numbers };
+        // `check` has seen to it that the number fits; the session fills in its own.
+        let step = Step { session: 0, sequence: sequence as u32, sides: BOTH, pose: [lateral, yaw, vertical, roll] };
         let answer = session.step(&step)?;
         let here: Vec<WheelAnswer> = sides(BOTH).map(|side| (&table.contacts(side, pose)).into()).collect();
         let same = here.len() == answer.wheels.len() && here.iter().zip(&answer.wheels).all(|(a, b)| a.same_bits(b));
