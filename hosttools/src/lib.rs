@@ -10,6 +10,7 @@ pub mod hertz;
 pub mod image;
 pub mod naive;
 pub mod pair;
+pub mod pil;
 pub mod poses;
 pub mod profile;
 pub mod profile_noise;

@@ -1,7 +1,7 @@
 //! Multilinear blend of the sixteen records around a place in the table, in integers.
 //!
 //! Sums of integers are exact, so their order does not matter: the portable path below and the vector instructions of
-//! [`simd`](crate::simd) give the same bits. What is left for `f32` is the vertical fraction and the scale, the same
+//! [`simd`](crate::simd) and [`arm`](crate::arm) give the same bits. What is left for `f32` is the vertical fraction and the scale, the same
 //! few operations a lane in the same order everywhere.
 //!
 //! The eight edges' weights are the differences of a running sum S that ends at 2²⁷, so their sum is exact however they
@@ -53,6 +53,13 @@ pub(crate) struct Lanes(pub(crate) [f32; LANES]);
 
 impl Lanes {
     pub(crate) const ZERO: Self = Self([0.0; LANES]);
+
+    /// Lanes to be written over. On ARM of a number that the compiler does not know to be zero: it would call a routine,
+    /// which takes several times as long as storing them.
+    #[inline(always)]
+    pub(crate) fn any() -> Self {
+        if cfg!(target_arch = "arm") { Self([core::hint::black_box(0.0); LANES]) } else { Self::ZERO }
+    }
 }
 
 /// Scales of the lanes: value = offset + step * blended lane, the step divided by what the weights sum to.
@@ -161,23 +168,17 @@ pub(crate) fn fractions(cell: &Cell, block: usize) -> [f32; BLOCK] {
 ///
 /// with t not clamped for the indentations, clamped for everything else.
 #[cfg_attr(
-    all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable"), not(test)),
-    expect(dead_code, reason = "see simd")
+    all(
+        any(target_arch = "arm", all(target_arch = "x86_64", target_feature = "sse2")),
+        not(feature = "portable"),
+        not(test)
+    ),
+    expect(dead_code, reason = "see simd and arm")
 )]
 #[inline(always)]
 pub(crate) fn portable(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales, lanes: &mut Lanes) {
     let edges = edges(records, cell);
-    let mut before = 0;
-    let [[a, b], [c, d], [e, f], [g, h]] = cell.sums.map(Two::numbers);
-    let weights = [a, b, c, d, e, f, g, h].map(|sum| {
-        let sum = whole(sum);
-        let weights = Weights {
-            coarse: short((before >> FINE_BITS) - (sum >> FINE_BITS)),
-            fine: short((before & FINE_MASK) - (sum & FINE_MASK)),
-        };
-        before = sum;
-        weights
-    });
+    let weights = weights(cell);
     for (block, out) in lanes.0.as_chunks_mut::<BLOCK>().0.iter_mut().enumerate() {
         let fine = FINE.get(block).copied().unwrap_or_default();
         let t = fractions(cell, block);
@@ -198,14 +199,30 @@ pub(crate) fn portable(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScale
 
 /// Weights of an edge.
 #[derive(Clone, Copy)]
-struct Weights {
-    coarse: i16,
-    fine: i16,
+pub(crate) struct EdgeWeights {
+    pub(crate) coarse: i16,
+    pub(crate) fine: i16,
+}
+
+/// Weights of a cell's edges.
+#[inline(always)]
+pub(crate) fn weights(cell: &Cell) -> [EdgeWeights; 8] {
+    let mut before = 0;
+    let [[a, b], [c, d], [e, f], [g, h]] = cell.sums.map(Two::numbers);
+    [a, b, c, d, e, f, g, h].map(|sum| {
+        let sum = whole(sum);
+        let weights = EdgeWeights {
+            coarse: short((before >> FINE_BITS) - (sum >> FINE_BITS)),
+            fine: short((before & FINE_MASK) - (sum & FINE_MASK)),
+        };
+        before = sum;
+        weights
+    })
 }
 
 /// Sums of a lane over the edges, at their lower and upper nodes.
 #[inline(always)]
-fn sums(edges: &Edges<'_>, weights: &[Weights; 8], lane: usize, of: impl Fn(&Weights) -> i16) -> (i32, i32) {
+fn sums(edges: &Edges<'_>, weights: &[EdgeWeights; 8], lane: usize, of: impl Fn(&EdgeWeights) -> i16) -> (i32, i32) {
     let q = |record: &[u8; RECORD]| {
         i32::from(i16::from_le_bytes(record.as_chunks().0.get(lane).copied().unwrap_or_default()))
     };
@@ -224,7 +241,7 @@ fn short(weight: i32) -> i16 {
 /// A sum as `f32`, rounded.
 #[inline(always)]
 #[expect(clippy::cast_precision_loss, reason = "rounding is the purpose")]
-fn float(sum: i32) -> f32 {
+pub(crate) fn float(sum: i32) -> f32 {
     sum as f32
 }
 
@@ -299,10 +316,12 @@ mod tests {
             let mut lanes = Lanes::ZERO;
             portable(&records, &cell, &scales, &mut lanes);
             check(&records, [u, p, r, t], &lanes);
+            let bits = |lanes: &Lanes| lanes.0.map(f32::to_bits);
+            let mut other = Lanes::ZERO;
+            crate::arm::blend(&records, &cell, &scales, &mut other);
+            assert_eq!(bits(&lanes), bits(&other));
             #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
             {
-                let bits = |lanes: &Lanes| lanes.0.map(f32::to_bits);
-                let mut other = Lanes::ZERO;
                 crate::simd::blend_128(&records, &cell, &scales, &mut other);
                 assert_eq!(bits(&lanes), bits(&other));
                 crate::simd::blend(&records, &cell, &scales, &mut other);

@@ -3,7 +3,11 @@
 
 use core::ops::{Add, Div, Mul, Sub};
 
+#[cfg(all(target_arch = "arm", target_abi = "eabihf", not(feature = "portable")))]
+use crate::arm::sqrt;
 use crate::math::{at_least, at_most, single};
+#[cfg(not(all(target_arch = "arm", target_abi = "eabihf", not(feature = "portable"))))]
+use libm::sqrtf as sqrt;
 
 /// Four `f32`.
 #[derive(Clone, Copy)]
@@ -43,7 +47,7 @@ impl Four {
     /// Square roots of numbers that are not negative, correctly rounded.
     #[inline(always)]
     pub(crate) fn sqrt(self) -> Self {
-        Self(self.0.map(libm::sqrtf))
+        Self(self.0.map(sqrt))
     }
 
     /// Bit i says whether number i is above zero.

@@ -80,6 +80,9 @@ pub mod creep;
 pub mod layout;
 pub mod wheelset;
 
+#[cfg(any(test, all(target_arch = "arm", not(feature = "portable"))))]
+#[cfg_attr(target_arch = "arm", expect(unsafe_code, reason = "an instruction by name, see there"))]
+mod arm;
 mod axis;
 mod blend;
 mod channel;

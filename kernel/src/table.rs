@@ -67,6 +67,8 @@ impl<'a> ContactTable<'a> {
     ///
     /// # Errors
     /// Whatever is wrong with the image, see [`TableError`].
+    #[cold]
+    #[inline(never)]
     pub fn new(image: &'a [u8]) -> Result<Self, TableError> {
         let bytes = check::envelope(image)?;
         let header = check::header(bytes)?;
@@ -188,6 +190,7 @@ impl<'a> ContactTable<'a> {
     }
 
     /// [`ContactTable::contacts`] into a place of the caller's, which saves a copy.
+    #[cfg_attr(target_arch = "arm", inline)]
     pub fn contacts_into(&self, side: Side, pose: &Pose, contacts: &mut Contacts) {
         self.finish(side, &self.prepare(side, pose), contacts);
     }
@@ -224,7 +227,7 @@ impl<'a> ContactTable<'a> {
         let Prepared { located, cell, flags } = prepared;
         // Through memory that the compiler cannot see through: it would interleave the blend's parts with what follows,
         // and spill more registers than it saves.
-        let mut lanes = Lanes::ZERO;
+        let mut lanes = Lanes::any();
         let lanes = black_box(&mut lanes);
         data.blend(cell, lanes);
         let frame = Frame {
@@ -283,7 +286,12 @@ impl<'a> SideData<'a> {
     /// Blended lanes in their units, by the vector instructions of the build's target. All give the same bits.
     #[inline(always)]
     fn blend(&self, cell: &Cell, lanes: &mut Lanes) {
-        #[cfg(not(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable"))))]
+        #[cfg(all(target_arch = "arm", not(feature = "portable")))]
+        crate::arm::blend(self.records, cell, &self.scales, lanes);
+        #[cfg(any(
+            not(any(target_arch = "arm", all(target_arch = "x86_64", target_feature = "sse2"))),
+            feature = "portable"
+        ))]
         crate::blend::portable(self.records, cell, &self.scales, lanes);
         #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
         crate::simd::blend(self.records, cell, &self.scales, lanes);

@@ -5,6 +5,7 @@ pub mod compile;
 pub mod creep;
 pub mod inspect;
 pub mod lookup;
+pub mod pil;
 pub mod profile;
 pub mod quickstart;
 pub mod rig;
@@ -47,6 +48,8 @@ enum Command {
     Inspect(inspect::InspectArgs),
     /// Contacts of poses by a table
     Lookup(lookup::LookupArgs),
+    /// Have a board look contacts up over a serial line, and compare every answer with the host's
+    Pil(pil::PilArgs),
     /// Say what a profile file was taken for, and draw it with its slope and curvature
     Profile(profile::ProfileArgs),
     /// S1002 on 60E1: compile, verify, look up, and write a report, in well under a minute
@@ -72,6 +75,7 @@ impl Cli {
             Command::Creep(args) => creep::run(args)?,
             Command::Inspect(args) => inspect::run(args)?,
             Command::Lookup(args) => lookup::run(args)?,
+            Command::Pil(args) => return pil::run(args),
             Command::Profile(args) => profile::run(args)?,
             Command::Quickstart(args) => quickstart::run(args)?,
             Command::Rig(args) => rig::run(args)?,

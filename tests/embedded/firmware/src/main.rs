@@ -1,0 +1,141 @@
+//! Looks up the poses of a file and writes every answer with the instructions it took. `compare` writes the file, and
+//! holds the answers against the host's.
+#![no_std]
+#![no_main]
+
+mod counter;
+mod semihosting;
+mod stack;
+
+use core::hint::black_box;
+
+use cortex_m_rt::entry;
+use cortex_m_semihosting::debug;
+use flangeway::{ContactTable, Contacts, Pose, SLOTS, Side};
+use flangeway_mps2 as _;
+use flangeway_pil::ContactNumbers;
+
+use counter::Counter;
+use semihosting::{File, Output};
+
+/// A made-up table in which all three slots can carry force; `tests/kernel_gates.rs` writes it.
+static THREE: &[u8] = include_bytes!("../../../gates/three_contacts.fwt");
+
+/// Bytes of a pose in the file: table, side, four `f64`.
+const POSE: usize = 2 + 4 * 8;
+/// Bytes of a contact: slot, twelve `f32`.
+const CONTACT: usize = 1 + 12 * 4;
+/// Bytes of an answer: instructions, flags, number of contacts, three contacts, those that are none zero.
+const ANSWER: usize = 4 + 1 + 1 + SLOTS * CONTACT;
+
+/// What is counted: a lookup, or nothing at all.
+type Call = fn(&ContactTable<'_>, Side, &Pose, &mut Contacts);
+
+#[inline(never)]
+fn lookup(table: &ContactTable<'_>, side: Side, pose: &Pose, contacts: &mut Contacts) {
+    table.contacts_into(side, pose, contacts);
+}
+
+#[inline(never)]
+fn nothing(table: &ContactTable<'_>, side: Side, pose: &Pose, contacts: &mut Contacts) {
+    black_box((table, side, pose, contacts));
+}
+
+/// As many instructions as its name says, besides those of the call.
+#[inline(never)]
+fn thousand(table: &ContactTable<'_>, side: Side, pose: &Pose, contacts: &mut Contacts) {
+    counter::thousand();
+    black_box((table, side, pose, contacts));
+}
+
+#[entry]
+fn main() -> ! {
+    debug::exit(if run().is_some() { debug::EXIT_SUCCESS } else { debug::EXIT_FAILURE });
+    loop {
+        cortex_m::asm::wfi();
+    }
+}
+
+/// Everything; none where something is missing.
+fn run() -> Option<()> {
+    let counter = Counter::start(cortex_m::Peripherals::take()?.SYST);
+    let mut table = None;
+    let check_stack = stack::used_by(|| table = ContactTable::new(flangeway_tables::S1002_60E1_40_TABLE).ok());
+    let tables = [table?, ContactTable::new(THREE).ok()?];
+    let (poses, mut answers) = (File::open("poses.bin\0")?, Output::open()?);
+    let mut pose = [0; POSE];
+    let mut lookup_stack = 0;
+    let [table, _] = &tables;
+    let mut contacts = Contacts::NONE;
+    let mut without_lookup = |call| ticks(&counter, call, table, Side::Right, &Pose::default(), &mut contacts);
+    let (floor, calibration) = (without_lookup(nothing), without_lookup(thousand));
+    while poses.read(&mut pose) {
+        let (table, side, pose) = parse(&pose, &tables)?;
+        let mut contacts = Contacts::NONE;
+        lookup_stack = lookup_stack.max(stack::used_by(|| lookup(table, side, &pose, &mut contacts)));
+        let ticks = ticks(&counter, lookup, table, side, &pose, &mut contacts);
+        answers.write(&answer(counter::instructions(ticks - floor), &contacts))?;
+    }
+    // What was seen besides: nops counted, stack of a lookup, of the tables' check.
+    for number in [counter::instructions(calibration - floor), lookup_stack, check_stack] {
+        answers.write(&number.to_le_bytes())?;
+    }
+    Some(())
+}
+
+/// Ticks that a number of calls take.
+#[inline(never)]
+fn ticks(
+    counter: &Counter,
+    call: Call,
+    table: &ContactTable<'_>,
+    side: Side,
+    pose: &Pose,
+    contacts: &mut Contacts,
+) -> u32 {
+    let call = black_box(call);
+    counter.ticks(|| call(table, side, pose, contacts))
+}
+
+/// Table, side and pose from their bytes.
+fn parse<'a>(
+    bytes: &[u8; POSE],
+    tables: &'a [ContactTable<'static>; 2],
+) -> Option<(&'a ContactTable<'static>, Side, Pose)> {
+    let ([table, side], numbers) = bytes.split_first_chunk()?;
+    let number = |i: usize| numbers.as_chunks().0.get(i).copied().map(f64::from_le_bytes);
+    let pose = Pose { lateral: number(0)?, yaw: number(1)?, vertical: number(2)?, roll: number(3)? };
+    Some((tables.get(usize::from(*table))?, *Side::ALL.get(usize::from(*side))?, pose))
+}
+
+/// An answer in bytes.
+fn answer(instructions: u32, contacts: &Contacts) -> [u8; ANSWER] {
+    let mut bytes = [0; ANSWER];
+    if let Some((head, rest)) = bytes.split_first_chunk_mut() {
+        let [a, b, c, d] = instructions.to_le_bytes();
+        *head = [a, b, c, d, contacts.flags.bits(), contacts.list.len() as u8];
+        for (contact, place) in contacts.iter().zip(rest.as_chunks_mut().0) {
+            *place = contact_bytes(&contact.into());
+        }
+    }
+    bytes
+}
+
+fn contact_bytes(contact: &ContactNumbers) -> [u8; CONTACT] {
+    let mut bytes = [0; CONTACT];
+    if let Some((slot, places)) = bytes.split_first_mut() {
+        *slot = contact.slot;
+        for (number, place) in contact.numbers.iter().zip(places.as_chunks_mut().0) {
+            *place = number.to_le_bytes();
+        }
+    }
+    bytes
+}
+
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    debug::exit(debug::EXIT_FAILURE);
+    loop {
+        cortex_m::asm::wfi();
+    }
+}

@@ -1,0 +1,148 @@
+#!/usr/bin/env bash
+# The kernel on emulated microcontrollers: builds, runs and checks it on a Cortex-M7 and a Cortex-M4F, prints a line of
+# JSON for each, then drives a board over its serial line (processor in the loop). Installs what is missing.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+cd "$here"
+export CARGO_TERM_COLOR=never
+targets="$here/target"
+triple=thumbv7em-none-eabihf
+# What must hold on the Cortex-M7: instructions a lookup, bytes of flash without the table, bytes of stack of a lookup.
+most_instructions=3000 most_flash=24576 most_stack=2048
+exchanges=10000 damage=0.01
+machine() { [ "$1" = cortex-m7 ] && echo mps2-an500 || echo mps2-an386; }
+
+work=$(mktemp -d)
+board=
+trap '[ -z "$board" ] || kill "$board" 2>/dev/null || true; rm -rf "$work"' EXIT
+fail() { echo "tests/embedded/run.sh: $*" >&2; exit 1; }
+
+install() {
+  local sudo=
+  [ "$(id -u)" = 0 ] || sudo=sudo
+  $sudo apt-get update -qq && $sudo apt-get install -y --no-install-recommends "$@" >/dev/null
+}
+command -v qemu-system-arm >/dev/null || install qemu-system-arm
+command -v size >/dev/null || install binutils
+
+# The target by rustup; where it is not to be had, Debian's compiler builds `core` for it.
+if [ "${EMBEDDED_TOOLCHAIN:-}" != debian ] && rustup target add $triple 2>"$work/rustup.log"; then
+  firmware_cargo() { cargo "$@"; }
+  linker=()
+else
+  echo "note: no target $triple by rustup; building it with Debian's rustc-web" >&2
+  [ -n "$(dpkg -L rustc-web cargo-web rust-web-src 2>/dev/null | grep -m1 bin/rustc)" ] ||
+    install rustc-web cargo-web rust-web-src
+  debian_rustc=$(dpkg -L rustc-web | grep -m1 'bin/rustc$')
+  debian_cargo=$(dpkg -L cargo-web | grep -m1 'bin/cargo$')
+  lld=$(find "$(rustc --print sysroot)" -name rust-lld -type f 2>/dev/null | head -n 1)
+  [ -n "$lld" ] || { install lld; lld=$(command -v ld.lld); }
+  linker=(-C "linker=$lld")
+  targets="$targets/debian"
+  firmware_cargo() {
+    local command=$1
+    shift
+    RUSTC_BOOTSTRAP=1 RUSTC="$debian_rustc" "$debian_cargo" "$command" -Z build-std=core "$@"
+  }
+fi
+
+# build CPU [CARGO ARGUMENTS]: the firmware; the programs are in $targets/CPU/$triple/release.
+flags=
+build() {
+  local cpu=$1
+  shift
+  CARGO_TARGET_DIR="$targets/$cpu" RUSTFLAGS="-C target-cpu=$cpu -C link-arg=-Tlink.x ${linker[*]} $flags" \
+    firmware_cargo build --quiet --release --locked --target $triple "$@"
+}
+# bytes PROGRAM SECTIONS: their sum.
+bytes() { size -A "$1" | awk -v names="$2" '$1 ~ "^\\.(" names ")$" { sum += $2 } END { print sum + 0 }'; }
+table=$(stat -c %s "$root/tables/s1002_60e1_40.fwt")
+flash() { echo $(($(bytes "$1" 'vector_table|text|rodata|data') - table)); }
+# field NAME LINE: a number of a line of JSON.
+field() { sed -nE "s/.*\"$1\": ([0-9]+).*/\1/p" <<<"$2"; }
+
+CARGO_TARGET_DIR="$here/target/host" cargo build --quiet --release --locked -p flangeway-compare
+compare="$here/target/host/release/compare"
+"$compare" poses "$work/poses.bin"
+
+for cpu in cortex-m7 cortex-m4; do
+  build $cpu -p flangeway-firmware -p flangeway-smallest -p flangeway-template
+  programs="$targets/$cpu/$triple/release"
+  (cd "$work" && timeout 300 qemu-system-arm -cpu $cpu -machine "$(machine $cpu)" -display none -monitor none -serial none \
+    -semihosting-config enable=on,target=native -icount shift=0 -kernel "$programs/lookups" >answers.bin) ||
+    fail "$cpu: the firmware did not end well"
+  sizes="\"flash_bytes\": $(flash "$programs/smallest"), \"static_bytes\": $(bytes "$programs/smallest" 'data|bss|uninit')"
+  sizes="$sizes, \"template_flash_bytes\": $(flash "$programs/template")"
+  line=$("$compare" check $cpu "$work/answers.bin" "$sizes") || { echo "$line"; fail "$cpu: other answers than the host's"; }
+  echo "$line"
+  [ "$(field poses "$line")" -ge 1000 ] || fail "$cpu: fewer than 1000 poses"
+  [ "$(field thousand_nops "$line")" = 1000 ] || fail "$cpu: a thousand instructions are counted as others"
+  ! grep -qE '"poses_by_contacts": \[.*\b[0-9]\b.*\]' <<<"$line" || fail "$cpu: a number of contacts is rare among the poses"
+  [ "$(field stack_bytes "$line")" -lt $most_stack ] || fail "$cpu: a lookup takes $most_stack bytes of stack or more"
+  if [ $cpu = cortex-m7 ]; then
+    [ "$(field instructions_min "$line")" = "$(field instructions_max "$line")" ] || fail "$cpu: not the same for every pose"
+    [ "$(field instructions_max "$line")" -le $most_instructions ] || fail "$cpu: more than $most_instructions instructions"
+    [ "$(field flash_bytes "$line")" -lt $most_flash ] || fail "$cpu: $most_flash bytes of flash or more"
+  fi
+  if nm "$programs/template" | grep -E '__rust_alloc|__rg_alloc'; then fail "$cpu: an allocator is linked"; fi
+done
+
+# The template with log messages builds too.
+flags="-C link-arg=-Tdefmt.x"
+build cortex-m7 -p flangeway-template --features flangeway-template/defmt --target-dir "$targets/defmt"
+flags=
+template="$targets/cortex-m7/$triple/release/template"
+
+cargo build --quiet --release --locked --manifest-path "$root/Cargo.toml" --bin flangeway
+flangeway="${CARGO_TARGET_DIR:-$root/target}/release/flangeway"
+
+# start SERIAL: a board with its serial line there.
+start() {
+  qemu-system-arm -cpu cortex-m7 -machine mps2-an500 -display none -monitor none -icount shift=0 -serial "$1" \
+    -kernel "$template" >"$work/board.log" 2>&1 &
+  board=$!
+}
+stop() { kill "$board" && { wait "$board" || true; board=; }; }
+# await PATTERN FILE: waits until a line says so, for a minute.
+await() {
+  local i
+  for ((i = 0; i < 600; i++)); do
+    if grep -qE "$1" "$2" 2>/dev/null; then return 0; fi
+    sleep 0.1
+  done
+  fail "no \"$1\" within a minute: $(cat "$2")"
+}
+
+# A port that nobody listens at.
+port=0
+while [ $port = 0 ] || (: <"/dev/tcp/127.0.0.1/$port") 2>/dev/null; do port=$((20000 + RANDOM % 10000)); done
+line="tcp:127.0.0.1:$port,server=on,wait=off,nodelay=on"
+start "$line"
+for ((i = 0; i < 100; i++)); do
+  if (: <"/dev/tcp/127.0.0.1/$port") 2>/dev/null; then break; fi
+  sleep 0.1
+done
+"$flangeway" pil --port "tcp:127.0.0.1:$port" --exchanges $exchanges --damage $damage --seed 1 --json \
+  >"$work/pil.json" 2>"$work/pil.log" &
+host=$!
+await "$((exchanges / 2)) of" "$work/pil.log"
+stop
+start "$line"
+wait $host || { cat "$work/pil.log"; fail "pil: it ended with another status than 0"; }
+stop
+cat "$work/pil.json"
+pil=$(tr -d '\n' <"$work/pil.json")
+[ "$(field exchanges "$pil")" = $exchanges ] && [ "$(field mismatches "$pil")" = 0 ] || fail "pil: not every answer is right"
+[ "$(field board_restarted "$pil")" -ge 1 ] || fail "pil: the restart was not noticed"
+[ "$(field retries "$pil")" -ge 100 ] || fail "pil: fewer frames were asked again than were damaged"
+[ "$(field count_min "$pil")" -gt 0 ] || fail "pil: nothing was counted"
+
+# The same over a serial device, here a pseudo-terminal.
+start pty
+await 'redirected to /dev/' "$work/board.log"
+device=$(sed -nE 's/.*redirected to ([^ ]+).*/\1/p' "$work/board.log")
+"$flangeway" pil --port "$device:115200" --exchanges 200 --damage $damage 2>"$work/pil.log" || { cat "$work/pil.log"; fail "pil: the serial device"; }
+tail -n 5 "$work/pil.log"
+stop
+echo "tests/embedded/run.sh: all holds"
