@@ -4,6 +4,7 @@
 pub mod compile;
 pub mod inspect;
 pub mod lookup;
+pub mod merge;
 pub mod profile;
 pub mod quickstart;
 pub mod rig;
@@ -44,6 +45,8 @@ enum Command {
     Inspect(inspect::InspectArgs),
     /// Contacts of poses by a table
     Lookup(lookup::LookupArgs),
+    /// Put the shards of a table together
+    Merge(merge::MergeArgs),
     /// Say what a profile file was taken for, and draw it with its slope and curvature
     Profile(profile::ProfileArgs),
     /// S1002 on 60E1: compile, verify, look up, and write a report, in well under a minute
@@ -68,6 +71,7 @@ impl Cli {
             Command::Compile(args) => compile::run(args)?,
             Command::Inspect(args) => inspect::run(args)?,
             Command::Lookup(args) => lookup::run(args)?,
+            Command::Merge(args) => merge::run(args)?,
             Command::Profile(args) => profile::run(args)?,
             Command::Quickstart(args) => quickstart::run(args)?,
             Command::Rig(args) => rig::run(args)?,
@@ -77,6 +81,12 @@ impl Cli {
         }
         Ok(Outcome::Done)
     }
+}
+
+/// A pool of so many threads, of as many as there are cores by default.
+fn threads(jobs: Option<u16>) -> Result<rayon::ThreadPool> {
+    let threads = rayon::ThreadPoolBuilder::new().num_threads(jobs.map_or(0, usize::from)).build();
+    threads.map_err(|e| Error::field("", "--jobs", e.to_string()))
 }
 
 /// A table file read whole, to be checked by the kernel.

@@ -122,10 +122,7 @@ impl Profile {
             return Self::built_in(spec, kind, options);
         }
         let path = base.join(spec);
-        let bytes = std::fs::read(&path).map_err(|e| {
-            Error::file(&path, format!("cannot be read ({e}); the built-in profiles are {}", BUILT_INS.join(", ")))
-        })?;
-        Self::parse(&path, &bytes, kind, options)
+        Self::parse(&path, &read_file(&path)?, kind, options)
     }
 
     /// Reads a profile from a file's bytes; `path` gives its name, its extension, and the errors' place.
@@ -162,6 +159,16 @@ impl Profile {
             _ => Ok(profile),
         }
     }
+}
+
+/// Contents of a profile file.
+///
+/// # Errors
+/// When it cannot be read; the message names the built-in profiles, which it may have been meant for.
+pub fn read_file(path: &Path) -> Result<Vec<u8>> {
+    std::fs::read(path).map_err(|e| {
+        Error::file(path, format!("cannot be read ({e}); the built-in profiles are {}", BUILT_INS.join(", ")))
+    })
 }
 
 /// SHA-256 of coordinates as little-endian `f64`.
