@@ -1,6 +1,7 @@
 //! The commands of the `flangeway` program, one module each. Machine output goes to stdout or `-o`, words and
 //! progress to stderr.
 
+pub mod campaign;
 pub mod compile;
 pub mod inspect;
 pub mod lookup;
@@ -39,6 +40,8 @@ pub enum Outcome {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Tables for every combination of wheels, rails and settings, here or on a Slurm cluster
+    Campaign(campaign::CampaignArgs),
     /// Compile a contact table from a recipe
     Compile(compile::CompileArgs),
     /// Print what a table says of itself
@@ -68,6 +71,7 @@ impl Cli {
     /// On bad input, with the file, the line or field and the value.
     pub fn run(&self) -> Result<Outcome> {
         match &self.command {
+            Command::Campaign(args) => return campaign::run(args),
             Command::Compile(args) => compile::run(args)?,
             Command::Inspect(args) => inspect::run(args)?,
             Command::Lookup(args) => lookup::run(args)?,

@@ -29,7 +29,7 @@ pub use rails::{RailHead, rail_54e1, rail_60e1};
 pub use s1002::{s1002_height, s1002_slope};
 
 /// What a profile belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, clap::ValueEnum, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ProfileKind {
     /// A wheel: flange at negative y, flange tip at the largest z.
