@@ -138,7 +138,7 @@ mod tests {
         assert_eq!(RadiusDifference::new(-10e-3, 1e-4, values).conicity(3e-3), None);
     }
 
-    /// EN 15302, Annex E, case E.1: wheel A on rail A, Δr (mm) for y = 0 to 5 mm in steps of 0.1 mm, and tan γ_e at
+    /// EN 15302, Annex E, case E.1: reference wheel A on reference rail A, Δr (mm) for y = 0 to 5 mm in steps of 0.1 mm, and tan γ_e at
     /// whole amplitudes (mm).
     const E1: [f64; 51] = [
         0.000, 0.032, 0.051, 0.071, 0.092, 0.116, 0.142, 0.167, 0.197, 0.227, 0.257, 0.292, 0.328, 0.361, 0.402, 0.443,
