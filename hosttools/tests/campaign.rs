@@ -137,7 +137,8 @@ fn identifiers_depend_on_what_determines_the_bytes_and_on_nothing_else() {
     let mut turned = of(&text.replace("[1.435, 1.440]", "[1.44, 1.4350] # gauges"));
     assert_ne!(first, turned);
     let mut sorted = first.clone();
-    (sorted.sort(), turned.sort());
+    sorted.sort();
+    turned.sort();
     assert_eq!(sorted, turned);
     std::fs::rename(folder.path("rails"), folder.path("elsewhere")).unwrap();
     assert_eq!(first, of(&text.replace("rails/*", "elsewhere/*")));
@@ -249,7 +250,8 @@ fn tasks_of_an_array_cover_every_table_once() {
         listed.extend(serde_json::from_str::<Vec<String>>(line).unwrap());
     }
     let mut planned = ids(&manifest);
-    (listed.sort(), planned.sort());
+    listed.sort();
+    planned.sort();
     assert_eq!(listed, planned);
     // The template is the user's.
     folder.write("out/slurm/template.sh", "#!/bin/sh\n# mine\n{{program}} {{list}}\n");

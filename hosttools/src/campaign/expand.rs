@@ -43,8 +43,12 @@ pub fn expand(path: &Path) -> Result<(Manifest, BTreeMap<String, Vec<u8>>)> {
     let (mut entries, mut seen) = (Vec::new(), HashSet::new());
     for (value, varies) in variants(path, folder, "", &Value::Table(table))? {
         let planned = shelf.entry(path, value, varies)?;
+        let key = match &planned {
+            Planned::Table(entry) => entry.id.clone(),
+            Planned::Broken { label, reason } => format!("{label}: {reason}"),
+        };
         // Two spellings of one table, or a profile that is listed and globbed.
-        if planned.entry().is_none_or(|entry| seen.insert(entry.id.clone())) {
+        if seen.insert(key) {
             entries.push(planned);
         }
     }

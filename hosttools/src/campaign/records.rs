@@ -27,6 +27,8 @@ pub struct Record {
     pub id: String,
     /// How it ended.
     pub finish: Finish,
+    /// What its profiles are warned of.
+    pub warnings: Vec<String>,
     /// Time it took (s).
     pub seconds: f64,
     /// Processor time of it (s), where the system tells.
@@ -39,6 +41,16 @@ pub struct Record {
     pub host: String,
     /// The Slurm task, as `job_task`.
     pub task: Option<String>,
+}
+
+impl Record {
+    /// Why the table cannot be compiled.
+    pub fn reason(&self) -> Option<&str> {
+        match &self.finish {
+            Finish::Done => None,
+            Finish::Failed(reason) => Some(reason),
+        }
+    }
 }
 
 /// The file of this process.

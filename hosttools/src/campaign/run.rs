@@ -11,7 +11,7 @@ use crate::compile::compile;
 use crate::error::{Error, Result};
 use crate::image::write_atomically;
 use crate::pair::Pair;
-use crate::progress;
+use crate::{profile_noise, progress};
 
 /// What a run has done.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -86,7 +86,11 @@ impl Shared<'_> {
         }
         let (start, cpu) = (Instant::now(), records::cpu_seconds());
         let recipe = self.folder.recipe(entry)?;
-        let compiled = Pair::build(&recipe).and_then(|pair| compile(&recipe, &pair, None));
+        let mut warnings = Vec::new();
+        let compiled = Pair::build(&recipe).and_then(|pair| {
+            warnings = profile_noise::warnings(&recipe, &pair)?;
+            compile(&recipe, &pair, None)
+        });
         let (finish, said) = match &compiled {
             Ok(compiled) => {
                 write_atomically(self.folder.table(&entry.id), &compiled.image)?;
@@ -98,6 +102,7 @@ impl Shared<'_> {
         self.log.append(&Record {
             id: entry.id.clone(),
             finish,
+            warnings,
             seconds,
             cpu_seconds: records::cpu_seconds().zip(cpu).map(|(now, then)| now - then),
             peak_bytes: records::peak_bytes(),

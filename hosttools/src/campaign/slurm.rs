@@ -53,8 +53,8 @@ const TEMPLATE: &str = include_str!("slurm_job.sh");
 /// Longest array where the cluster does not tell: Slurm's own default.
 const MAX_ARRAY_SIZE: usize = 1001;
 
-/// Expected seconds of one core for a table: measured over budgets of 24 KiB to 1 MiB (CAMPAIGNS.md), a start and a
-/// share for each byte. Sampled node values take about half of the search's time more, fitted ones twice that.
+/// Expected seconds of one core for a table, by its bytes; roughly those of Hertzian tables of 43 KB to 1 MiB
+/// (CAMPAIGNS.md). Only the proportions matter to the balance of tasks.
 pub(super) fn cost(recipe: &Recipe) -> f64 {
     let grid = &recipe.grid;
     let axes = [grid.lateral_m, grid.yaw_rad, grid.vertical_m, grid.roll_rad];
@@ -63,21 +63,17 @@ pub(super) fn cost(recipe: &Recipe) -> f64 {
         Nodes::Count(n) => n as f64,
         Nodes::Auto => 3.0,
     };
-    let searched = axes.iter().any(|axis| axis.nodes == Nodes::Auto);
     let counted = sides * flangeway::layout::RECORD as f64 * axes.iter().map(count).product::<f64>();
+    let searched = axes.iter().any(|axis| axis.nodes == Nodes::Auto);
     let bytes = if searched { counted.max(grid.max_bytes as f64) } else { counted };
-    let share = match (searched, grid.node_values) {
-        (true, NodeValues::Fitted) => 1.0,
-        (false, NodeValues::Fitted) => 0.6,
-        (true, NodeValues::Sampled) => 0.4,
-        (false, NodeValues::Sampled) => 0.1,
+    // Measuring the errors; the search for axes; node values.
+    let search = if searched { 6.0 + 4e-6 * bytes } else { 0.0 };
+    let values = match grid.node_values {
+        NodeValues::Fitted => 16e-6,
+        NodeValues::Sampled => 1e-6,
     };
-    START + A_BYTE * share * bytes
+    3.0 + search + values * bytes
 }
-
-/// Seconds of one core that every table takes, and for each byte of one.
-const START: f64 = 1.0;
-const A_BYTE: f64 = 28e-6;
 
 /// Parts of equal cost: the costliest table first, each to the part that has the least so far.
 pub fn balance(costs: &[f64], parts: usize) -> Vec<Vec<usize>> {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 
 use super::{Outcome, print_json};
-use crate::campaign::{Entry, Finish, Folder, Manifest, State, plan, read_records, run as compile, slurm, summaries};
+use crate::campaign::{Entry, Folder, Manifest, Record, State, plan, read_records, run as compile, slurm, summaries};
 use crate::error::{Error, Result};
 use crate::image::write_atomically;
 use crate::report::campaign::html;
@@ -200,14 +200,10 @@ fn status(folder: &Path, as_json: bool) -> Result<Outcome> {
     let (mut whole, mut missing) = (0, 0);
     let (mut damaged, mut failed) = (Vec::new(), Vec::new());
     for entry in manifest.tables() {
-        let reason = records.get(&entry.id).and_then(|record| match &record.finish {
-            Finish::Failed(reason) => Some(reason.clone()),
-            Finish::Done => None,
-        });
-        match (folder.state(entry), reason) {
+        match (folder.state(entry), records.get(&entry.id).and_then(Record::reason)) {
             (State::Whole, _) => whole += 1,
             (State::Damaged(reason), _) => damaged.push((entry.label.clone(), reason)),
-            (State::Missing, Some(reason)) => failed.push((entry.label.clone(), reason)),
+            (State::Missing, Some(reason)) => failed.push((entry.label.clone(), reason.to_owned())),
             (State::Missing, None) => missing += 1,
         }
     }
@@ -250,16 +246,11 @@ fn report(folder: &Path) -> Result<Outcome> {
     let (folder, manifest) = opened(folder)?;
     let entries: Vec<&Entry> = manifest.tables().collect();
     let found = summaries(&folder, &entries);
-    let failed = read_records(&folder)?.into_iter().filter_map(|(id, record)| match record.finish {
-        Finish::Failed(reason) => Some((id, reason)),
-        Finish::Done => None,
-    });
-    let failed: BTreeMap<String, String> = failed.collect();
     let tables: Vec<_> = entries.into_iter().zip(&found).collect();
     let name = std::path::absolute(folder.path()).ok();
     let name = name.as_deref().and_then(Path::file_name).unwrap_or_default().to_string_lossy();
     let path = folder.path().join("report.html");
-    write_atomically(&path, html(&name, &manifest, &tables, &failed).as_bytes())?;
+    write_atomically(&path, html(&name, &manifest, &tables, &read_records(&folder)?).as_bytes())?;
     eprintln!("{}: {} pairs", path.display(), tables.len());
     Ok(Outcome::Done)
 }

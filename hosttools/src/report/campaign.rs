@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::page::{END, escaped, head};
-use crate::campaign::{CELLS, Entry, LOAD, Manifest, State, Summary, conicity};
+use crate::campaign::{CELLS, Entry, LOAD, Manifest, Record, State, Summary, conicity};
 
 /// Colours by the number of contacts, 0 to 3: P. Tol's high-contrast scheme, and white where the load is not reached.
 const COUNTS: [&str; 4] = ["#fff", "#e4e4de", "#004488", "#bb5566"];
@@ -16,23 +16,22 @@ table.grid td{font-size:13px;line-height:1.35;white-space:nowrap}\
 table.grid svg{width:160px;height:60px;display:inline-block;margin:4px 0 0}\
 .lacking{background:#fbeaec}.scroll{overflow-x:auto}</style>\n";
 
-/// The page. `failed` are reasons by identifier, `folder` names the campaign.
+/// The page: `folder` names the campaign, `records` are what its tables' compilations have left, by identifier.
 pub fn html(
     folder: &str,
     manifest: &Manifest,
     tables: &[(&Entry, &Summary)],
-    failed: &BTreeMap<String, String>,
+    records: &BTreeMap<String, Record>,
 ) -> String {
     let whole = tables.iter().filter(|(_, summary)| summary.state == State::Whole).count();
     let broken: Vec<_> = manifest.broken().collect();
     let mut html = head(
         &format!("Campaign {}", escaped(folder)),
         &format!(
-            "{whole} of {} tables are there and whole; {} more cannot be planned for a broken profile. Force error is \
-             that of the total normal force against the direct solver, as measured when the table was compiled. Equivalent \
-             conicity is tan γe at y = {} mm to EN 15302 by integration of the kinematic motion (its Annex B), from the \
-             rigid contact of the wheelset with its roll, new profiles on both sides unless the recipe says otherwise. The \
-             small maps count the contacts of the right wheel under {} kN.",
+            "{whole} of {} tables are there and whole; {} more have a broken profile. Force error is that of the total \
+             normal force against the direct solver, as measured when the table was compiled. Equivalent conicity is tan γe \
+             at y = {} mm to EN 15302 by integration of the kinematic motion (its Annex B), from the rigid contact of the \
+             wheelset with its roll. The small maps count the contacts of the right wheel that carry under {} kN.",
             tables.len(),
             broken.len(),
             1e3 * conicity::AMPLITUDE,
@@ -42,9 +41,10 @@ pub fn html(
     html += STYLE;
     html += &legend(tables);
     for (title, group) in groups(tables) {
-        html += &grid(&title, &group, failed);
+        html += &grid(&title, &group, records);
     }
-    html += &lacking(tables, failed, &broken);
+    html += &list("Not there", &lacking(tables, records, &broken));
+    html += &list("Warnings", &warnings(tables, records));
     html += END;
     html
 }
@@ -85,9 +85,9 @@ fn legend(tables: &[Table<'_>]) -> String {
 }
 
 /// Wheels down, rails across.
-fn grid(title: &str, tables: &[Table<'_>], failed: &BTreeMap<String, String>) -> String {
+fn grid(title: &str, tables: &[Table<'_>], records: &BTreeMap<String, Record>) -> String {
     let (mut wheels, mut rails) = (Vec::new(), Vec::new());
-    let mut cells: BTreeMap<(&str, &str), Vec<Table<'_>>> = BTreeMap::new();
+    let mut cells: BTreeMap<(&str, &str), Table<'_>> = BTreeMap::new();
     for table in tables {
         let (wheel, rail) = table.0.names();
         if !wheels.contains(&wheel) {
@@ -96,7 +96,7 @@ fn grid(title: &str, tables: &[Table<'_>], failed: &BTreeMap<String, String>) ->
         if !rails.contains(&rail) {
             rails.push(rail);
         }
-        cells.entry((wheel, rail)).or_default().push(*table);
+        cells.insert((wheel, rail), *table);
     }
     let title = if title.is_empty() { "Pairs" } else { title };
     let mut html =
@@ -108,10 +108,7 @@ fn grid(title: &str, tables: &[Table<'_>], failed: &BTreeMap<String, String>) ->
     for wheel in wheels {
         let _ = write!(html, "<tr><th scope=\"row\">{}</th>", escaped(wheel));
         for rail in &rails {
-            match cells.get(&(wheel, *rail)) {
-                Some(tables) => tables.iter().for_each(|table| html += &cell(table, failed)),
-                None => html += "<td></td>",
-            }
+            html += &cells.get(&(wheel, *rail)).map_or("<td></td>".into(), |table| cell(table, records));
         }
         html += "</tr>\n";
     }
@@ -119,9 +116,9 @@ fn grid(title: &str, tables: &[Table<'_>], failed: &BTreeMap<String, String>) ->
     html
 }
 
-fn cell((entry, summary): &Table<'_>, failed: &BTreeMap<String, String>) -> String {
+fn cell((entry, summary): &Table<'_>, records: &BTreeMap<String, Record>) -> String {
     let Some(errors) = summary.errors else {
-        let why = match (&summary.state, failed.get(&entry.id)) {
+        let why = match (&summary.state, records.get(&entry.id).and_then(Record::reason)) {
             (_, Some(_)) => "failed",
             (State::Missing, None) => "missing",
             _ => "damaged",
@@ -169,24 +166,37 @@ fn map(contacts: &[u8]) -> String {
 }
 
 /// What is not there, with the reason.
-fn lacking(tables: &[Table<'_>], failed: &BTreeMap<String, String>, broken: &[(&str, &str)]) -> String {
+fn lacking(tables: &[Table<'_>], records: &BTreeMap<String, Record>, broken: &[(&str, &str)]) -> Vec<(String, String)> {
     let reason = |(entry, summary): &Table<'_>| {
-        let why = match (&summary.state, failed.get(&entry.id)) {
+        let why = match (&summary.state, records.get(&entry.id).and_then(Record::reason)) {
             (State::Whole, _) => return None,
-            (_, Some(reason)) => reason.clone(),
+            (_, Some(reason)) => reason.to_owned(),
             (State::Missing, None) => "not compiled yet".into(),
             (State::Damaged(reason), None) => format!("damaged: {reason}"),
         };
         Some((entry.label.clone(), why))
     };
-    let mut rows: Vec<(String, String)> = broken.iter().map(|(a, b)| ((*a).to_owned(), (*b).to_owned())).collect();
-    rows.extend(tables.iter().filter_map(reason));
+    let broken = broken.iter().map(|(label, reason)| ((*label).to_owned(), (*reason).to_owned()));
+    broken.chain(tables.iter().filter_map(reason)).collect()
+}
+
+/// What the compiler has warned of.
+fn warnings(tables: &[Table<'_>], records: &BTreeMap<String, Record>) -> Vec<(String, String)> {
+    let of = |(entry, _): &Table<'_>| {
+        let warnings = records.get(&entry.id).map(|record| record.warnings.as_slice()).unwrap_or_default();
+        warnings.iter().map(|warning| (entry.label.clone(), warning.clone())).collect::<Vec<_>>()
+    };
+    tables.iter().flat_map(of).collect()
+}
+
+/// Tables and words, nothing where there are none.
+fn list(title: &str, rows: &[(String, String)]) -> String {
     if rows.is_empty() {
         return String::new();
     }
-    let mut html = String::from("<h2>Not there</h2>\n<table>\n<tbody>\n");
-    for (label, why) in rows {
-        let _ = writeln!(html, "<tr><th scope=\"row\">{}</th><td>{}</td></tr>", escaped(&label), escaped(&why));
+    let mut html = format!("<h2>{title}</h2>\n<table>\n<tbody>\n");
+    for (label, words) in rows {
+        let _ = writeln!(html, "<tr><th scope=\"row\">{}</th><td>{}</td></tr>", escaped(label), escaped(words));
     }
     html += "</tbody>\n</table>\n";
     html
