@@ -151,8 +151,10 @@ poll 20 "the requeueing of n1's task" requeued >/dev/null
 say "n1 is down; requeued: $(requeued | tr '\n' ' ')"
 # Slurm lets a requeued task wait two minutes; here that would only be waited for.
 for task in $(requeued); do scontrol update "JobId=$task" StartTime=now || true; done
+node n1
+say "n1 is started again"
 queue_empty() { [ -z "$(squeue -h -o %i)" ]; }
-poll 240 "the queue to empty" queue_empty
+poll 300 "the queue to empty" queue_empty
 damaged=$(find "$cluster/tables" -name '*.fwt' | sort | head -n 1)
 truncate -s -64 "$damaged"
 if "$flangeway" campaign status "$cluster" 2>"$scratch/status"; then
@@ -162,7 +164,6 @@ fi
 say "status before resuming (one table cut short by hand): $(head -n 1 "$scratch/status")"
 grep -q ' 0 missing' "$scratch/status" && { echo "nothing is missing although a task was killed" >&2; exit 1; }
 
-node n1
 poll 60 "n1 to come back" both_idle
 "$flangeway" campaign resume "$cluster" --slurm >"$scratch/jobs"
 say "resumed as $(tr '\n' ' ' <"$scratch/jobs")on n0 and n1"
@@ -182,7 +183,8 @@ for table in "$local"/tables/*.fwt; do
 done
 [ "$equal" -ge 24 ] && [ "$equal" = "$(tables "$cluster")" ]
 [ -z "$(find "$cluster/tables" -name '.flangeway-*')" ] || say "left over: $(find "$cluster/tables" -name '.flangeway-*' | wc -l) temporary files"
-say "$equal tables equal, byte for byte, cluster and local"
+total=$equal
+say "$total tables equal, byte for byte, cluster and local"
 "$flangeway" campaign report "$cluster"
 
 # --- a full disk, on a part of the same campaign
@@ -222,4 +224,4 @@ if python3 -m venv "$scratch/venv" >/dev/null 2>&1 &&
 else
   say "note: Snakemake cannot be installed here; its example was not run"
 fi
-say "passed"
+say "passed: nodes n0 and n1; killed node n1 and task $victim; requeued $(requeued | tr '\n' ' '); $total tables equal"
