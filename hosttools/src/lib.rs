@@ -1,5 +1,6 @@
 //! Flangeway's host library: from profiles and a recipe to a contact table, and everything that checks it.
 
+pub mod campaign;
 pub mod commands;
 pub mod compile;
 pub mod contact;

@@ -5,7 +5,7 @@ use flangeway::{Pose, Side, WheelGeometry};
 use crate::contact::{Body, Column, Method, Rail, Settings, SlotState, Wheel};
 use crate::curve::Curve;
 use crate::error::{Error, Result};
-use crate::profile::{Joint, Profile, ProfileKind, ReadOptions, is_built_in};
+use crate::profile::{Joint, Profile, ProfileKind, ReadOptions};
 use crate::recipe::{RailRecipe, Recipe};
 use crate::rigid;
 
@@ -34,13 +34,7 @@ impl Pair {
     pub fn build(recipe: &Recipe) -> Result<Self> {
         let wheel = &recipe.wheel;
         let rail = &recipe.rail;
-        let load = |spec: &str, kind: ProfileKind, options: ReadOptions| {
-            // A file's error names the file; a built-in has none, so its error is the recipe's.
-            Profile::load(spec, recipe.folder(), Some(kind), &options).map_err(|e| match is_built_in(spec) {
-                true => Error::field(&recipe.path, format!("{kind}.profile"), e.to_string()),
-                false => e,
-            })
-        };
+        let load = |spec: &str, kind: ProfileKind, options: ReadOptions| recipe.load_profile(spec, kind, &options);
         let right_wheel = load(&wheel.profile, ProfileKind::Wheel, wheel.options())?;
         let right_rail = load(&rail.profile, ProfileKind::Rail, rail.options())?;
         let right = Side::Right;

@@ -1,5 +1,7 @@
 //! A progress bar on stderr for work over a second.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use indicatif::{ParallelProgressIterator, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use rayon::prelude::*;
 
@@ -13,6 +15,14 @@ pub fn bar(length: u64, what: &'static str) -> ProgressBar {
     bar
 }
 
+/// Whether work runs side by side, where the bars of its parts would write over each other.
+static SILENT: AtomicBool = AtomicBool::new(false);
+
+/// Draws no bars inside [`parallel`] from now on.
+pub fn silence_parts() {
+    SILENT.store(true, Ordering::Relaxed);
+}
+
 /// Steps below which work is done before anybody would read a bar.
 const WORTH_A_BAR: usize = 2000;
 
@@ -22,6 +32,10 @@ pub fn parallel<T: Sync, U: Send>(
     what: &'static str,
     f: impl Fn(&T) -> U + Sync + Send,
 ) -> impl ParallelIterator<Item = U> {
-    let bar = if items.len() < WORTH_A_BAR { ProgressBar::hidden() } else { bar(items.len() as u64, what) };
+    let bar = if items.len() < WORTH_A_BAR || SILENT.load(Ordering::Relaxed) {
+        ProgressBar::hidden()
+    } else {
+        bar(items.len() as u64, what)
+    };
     items.par_iter().progress_with(bar).map(f)
 }

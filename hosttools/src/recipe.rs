@@ -3,6 +3,7 @@
 //! A recipe is a TOML file; `tables/recipes/` holds worked examples. Every key is checked: an unknown one, a missing
 //! one and a value out of its range are errors that name the file, the line or the key, and the value.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
@@ -10,7 +11,7 @@ use serde::Deserialize;
 use crate::contact::{Curvature, Dimension, Settings};
 use crate::error::{Error, Result};
 use crate::hertz::Material;
-use crate::profile::{LengthUnit, ReadOptions};
+use crate::profile::{LengthUnit, Profile, ProfileKind, ReadOptions, is_built_in, read_file};
 
 /// A recipe as written, its values checked.
 #[derive(Debug, Clone, Deserialize)]
@@ -36,6 +37,9 @@ pub struct Recipe {
     /// Its text, whose hash goes into the table's header.
     #[serde(skip)]
     pub text: String,
+    /// Contents of profile files that are at hand, by the names that the recipe gives them; others are read from disk.
+    #[serde(skip)]
+    pub profiles: BTreeMap<String, Vec<u8>>,
 }
 
 /// `[wheel]`: profile and place of a wheel.
@@ -289,6 +293,36 @@ impl Recipe {
     /// Folder against which profile paths are resolved.
     pub fn folder(&self) -> &Path {
         self.path.parent().unwrap_or(Path::new(""))
+    }
+
+    /// Loads one of its profiles.
+    ///
+    /// # Errors
+    /// As [`Profile::load`]; of a built-in profile with the recipe's field.
+    pub fn load_profile(&self, spec: &str, kind: ProfileKind, options: &ReadOptions) -> Result<Profile> {
+        match self.profiles.get(spec) {
+            Some(bytes) => Profile::parse(Path::new(spec), bytes, Some(kind), options),
+            // A file's error names the file; a built-in has none, so its error is the recipe's.
+            None => Profile::load(spec, self.folder(), Some(kind), options).map_err(|e| match is_built_in(spec) {
+                true => Error::field(&self.path, format!("{kind}.profile"), e.to_string()),
+                false => e,
+            }),
+        }
+    }
+
+    /// Contents of all profile files that it names.
+    ///
+    /// # Errors
+    /// When one cannot be read.
+    pub fn read_profiles(&self) -> Result<BTreeMap<String, Vec<u8>>> {
+        let left = [self.wheel.left.as_ref(), self.rail.left.as_ref()];
+        let names = [&self.wheel.profile, &self.rail.profile].into_iter();
+        let names = names.chain(left.into_iter().flatten().map(|other| &other.profile)).filter(|n| !is_built_in(n));
+        let content = |name: &String| match self.profiles.get(name) {
+            Some(bytes) => Ok((name.clone(), bytes.clone())),
+            None => Ok((name.clone(), read_file(&self.folder().join(name))?)),
+        };
+        names.map(content).collect()
     }
 
     /// Elastic constants.

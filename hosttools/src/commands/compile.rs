@@ -1,13 +1,13 @@
 //! `flangeway compile`: a contact table from a recipe.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde_json::json;
 
 use super::print_json;
-use crate::compile::{Uniform, compile};
-use crate::error::{Error, Result};
+use crate::compile::{Compiled, Part, Settled, Shard, Uniform, compile};
+use crate::error::Result;
 use crate::image::{folder_of, write_atomically};
 use crate::pair::Pair;
 use crate::profile_noise;
@@ -18,7 +18,7 @@ use crate::recipe::Recipe;
 pub struct CompileArgs {
     /// Recipe (TOML)
     pub recipe: PathBuf,
-    /// Table to write
+    /// Table to write; with --shard or --axes-only the shard or the axes
     #[arg(short, long, value_name = "T.fwt")]
     pub output: PathBuf,
     /// Threads; as many as there are cores by default. The table is the same for any number
@@ -30,6 +30,15 @@ pub struct CompileArgs {
     /// Bytes that "auto" axes may spend, instead of the recipe's `max_bytes`
     #[arg(long, value_name = "BYTES")]
     pub max_bytes: Option<u64>,
+    /// Solve only this part of the table, from 1/n to n/n; `flangeway merge` puts the parts together
+    #[arg(long, value_name = "i/n", conflicts_with = "json")]
+    pub shard: Option<Part>,
+    /// Settle the axes and write them, no table: shards that are given them need not search
+    #[arg(long, conflicts_with_all = ["shard", "axes", "json"])]
+    pub axes_only: bool,
+    /// Axes that --axes-only has settled for this recipe
+    #[arg(long, value_name = "T.axes", conflicts_with_all = ["uniform", "max_bytes"])]
+    pub axes: Option<PathBuf>,
     /// Print nodes, bytes, seconds and error figures as JSON to stdout
     #[arg(long)]
     pub json: bool,
@@ -46,32 +55,61 @@ pub fn run(args: &CompileArgs) -> Result<()> {
     folder_of(&args.output)?;
     recipe.grid.max_bytes = args.max_bytes.unwrap_or(recipe.grid.max_bytes);
     let recipe = recipe;
-    let threads = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
-    let threads = threads.map_err(|e| Error::field("", "--jobs", e.to_string()))?;
-    let (pair, warnings, compiled) = threads.install(|| {
+    let threads = super::threads(args.jobs)?;
+    threads.install(|| {
         let pair = Pair::build(&recipe)?;
         let warnings = profile_noise::warnings(&recipe, &pair)?;
         for warning in &warnings {
             eprintln!("flangeway: warning: {warning}");
         }
-        let compiled = compile(&recipe, &pair, args.uniform)?;
-        Ok::<_, Error>((pair, warnings, compiled))
-    })?;
-    write_atomically(&args.output, &compiled.image)?;
-    let (seconds, bytes) = (start.elapsed().as_secs_f64(), compiled.image.len());
-    let axes = &compiled.axes;
-    let counts = [&axes.lateral, &axes.yaw, &axes.vertical, &axes.roll].map(Vec::len);
-    let nodes = axes.nodes() * pair.sides();
-    let errors = compiled.errors;
+        let settled = match &args.axes {
+            None => None,
+            Some(path) => {
+                let settled = Settled::read(path)?;
+                settled.check_recipe(path, &recipe)?;
+                Some(settled)
+            }
+        };
+        let settle = || settled.clone().map_or_else(|| Settled::new(&recipe, &pair, args.uniform), Ok);
+        let seconds = || start.elapsed().as_secs_f64();
+        if args.axes_only {
+            let settled = settle()?;
+            settled.write(&args.output)?;
+            let [lateral, yaw, roll, vertical] = settled.counts();
+            eprintln!(
+                "{}: axes of {lateral} lateral x {yaw} yaw x {vertical} vertical x {roll} roll nodes, bounded by {}, \
+                 {:.1} s",
+                args.output.display(),
+                settled.bound,
+                seconds()
+            );
+        } else if let Some(part) = args.shard {
+            Shard::new(&recipe, &pair, settle()?, part)?.write(&args.output)?;
+            eprintln!("{}: shard {part}, {:.1} s", args.output.display(), seconds());
+        } else {
+            let compiled = match &settled {
+                Some(settled) => settled.compile(&recipe, &pair)?,
+                None => compile(&recipe, &pair, args.uniform)?,
+            };
+            write_atomically(&args.output, &compiled.image)?;
+            tell(&args.output, pair.sides(), &compiled, seconds());
+            if args.json {
+                print_json(&json(pair.sides(), &compiled, seconds(), &warnings))?;
+            }
+        }
+        Ok(())
+    })
+}
+
+/// Says what a table is and how good it is.
+pub(super) fn tell(output: &Path, sides: usize, compiled: &Compiled, seconds: f64) {
+    let [lateral, yaw, vertical, roll] = counts(compiled);
+    let (nodes, bytes, errors) = (sides * compiled.axes.nodes(), compiled.image.len(), compiled.errors);
     eprintln!(
-        "{}: {nodes} nodes ({} lateral x {} yaw x {} vertical x {} roll, {} side{}), {bytes} bytes, {seconds:.1} s",
-        args.output.display(),
-        counts[0],
-        counts[1],
-        counts[2],
-        counts[3],
-        pair.sides(),
-        if pair.sides() == 1 { "" } else { "s" },
+        "{}: {nodes} nodes ({lateral} lateral x {yaw} yaw x {vertical} vertical x {roll} roll, {sides} side{}), {bytes} \
+         bytes, {seconds:.1} s",
+        output.display(),
+        if sides == 1 { "" } else { "s" },
     );
     eprintln!("  bounded by {}", compiled.bound);
     eprintln!(
@@ -90,26 +128,35 @@ pub fn run(args: &CompileArgs) -> Result<()> {
         1e2 * budget.quantisation_predicted_rms,
         1e2 * budget.arithmetic.rms
     );
-    if args.json {
-        print_json(&json!({
-            "nodes": nodes,
-            "axes": { "lateral": counts[0], "yaw": counts[1], "vertical": counts[2], "roll": counts[3] },
-            "sides": pair.sides(),
-            "bytes": bytes,
-            "seconds": seconds,
-            "bound": compiled.bound.to_string(),
-            "force_error": {
-                "samples": errors.samples,
-                "rms": errors.force_rms,
-                "median": errors.force_median,
-                "p95": errors.force_p95,
-                "p99": errors.force_p99,
-                "max": errors.force_max,
-            },
-            "continuity": errors.continuity,
-            "budget": budget,
-            "warnings": warnings,
-        }))?;
-    }
-    Ok(())
+}
+
+/// Node counts as the paper writes them: lateral, yaw, vertical, roll.
+fn counts(compiled: &Compiled) -> [usize; 4] {
+    let axes = &compiled.axes;
+    [&axes.lateral, &axes.yaw, &axes.vertical, &axes.roll].map(Vec::len)
+}
+
+/// The same as JSON.
+pub(super) fn json(sides: usize, compiled: &Compiled, seconds: f64, warnings: &[String]) -> serde_json::Value {
+    let [lateral, yaw, vertical, roll] = counts(compiled);
+    let errors = compiled.errors;
+    json!({
+        "nodes": sides * compiled.axes.nodes(),
+        "axes": { "lateral": lateral, "yaw": yaw, "vertical": vertical, "roll": roll },
+        "sides": sides,
+        "bytes": compiled.image.len(),
+        "seconds": seconds,
+        "bound": compiled.bound.to_string(),
+        "force_error": {
+            "samples": errors.samples,
+            "rms": errors.force_rms,
+            "median": errors.force_median,
+            "p95": errors.force_p95,
+            "p99": errors.force_p99,
+            "max": errors.force_max,
+        },
+        "continuity": errors.continuity,
+        "budget": compiled.budget,
+        "warnings": warnings,
+    })
 }

@@ -1,11 +1,13 @@
 //! The commands of the `flangeway` program, one module each. Machine output goes to stdout or `-o`, words and
 //! progress to stderr.
 
+pub mod campaign;
 pub mod compile;
 pub mod creep;
 pub mod inspect;
 pub mod lookup;
 pub mod pil;
+pub mod merge;
 pub mod profile;
 pub mod quickstart;
 pub mod rig;
@@ -40,6 +42,8 @@ pub enum Outcome {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Tables for every combination of wheels, rails and settings, here or on a Slurm cluster
+    Campaign(campaign::CampaignArgs),
     /// Compile a contact table from a recipe
     Compile(compile::CompileArgs),
     /// Creep forces of contacts by one of four laws
@@ -50,6 +54,8 @@ enum Command {
     Lookup(lookup::LookupArgs),
     /// Have a board look contacts up over a serial line, and compare every answer with the host's
     Pil(pil::PilArgs),
+    /// Put the shards of a table together
+    Merge(merge::MergeArgs),
     /// Say what a profile file was taken for, and draw it with its slope and curvature
     Profile(profile::ProfileArgs),
     /// S1002 on 60E1: compile, verify, look up, and write a report, in well under a minute
@@ -71,11 +77,13 @@ impl Cli {
     /// On bad input, with the file, the line or field and the value.
     pub fn run(&self) -> Result<Outcome> {
         match &self.command {
+            Command::Campaign(args) => return campaign::run(args),
             Command::Compile(args) => compile::run(args)?,
             Command::Creep(args) => creep::run(args)?,
             Command::Inspect(args) => inspect::run(args)?,
             Command::Lookup(args) => lookup::run(args)?,
             Command::Pil(args) => return pil::run(args),
+            Command::Merge(args) => merge::run(args)?,
             Command::Profile(args) => profile::run(args)?,
             Command::Quickstart(args) => quickstart::run(args)?,
             Command::Rig(args) => rig::run(args)?,
@@ -85,6 +93,12 @@ impl Cli {
         }
         Ok(Outcome::Done)
     }
+}
+
+/// A pool of so many threads, of as many as there are cores by default.
+fn threads(jobs: Option<u16>) -> Result<rayon::ThreadPool> {
+    let threads = rayon::ThreadPoolBuilder::new().num_threads(jobs.map_or(0, usize::from)).build();
+    threads.map_err(|e| Error::field("", "--jobs", e.to_string()))
 }
 
 /// A table file read whole, to be checked by the kernel.

@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::recipe::{NodeValues, Nodes, Recipe};
 
 /// What ended the refinement of the axes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Bound {
     /// The counts were given.
     Counts,

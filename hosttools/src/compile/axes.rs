@@ -1,5 +1,7 @@
 //! The nodes of a table's axes.
 
+use std::collections::BTreeSet;
+
 use crate::error::{Error, Result};
 use crate::image::OwnedAxis;
 use crate::recipe::{self, Nodes, Recipe};
@@ -60,6 +62,22 @@ impl Axes {
         let [l, y, r] = REFINEMENT;
         let rigid = [divided(&lateral, l), divided(&yaw, y), divided(&roll, r)];
         Self { lateral, yaw, roll, vertical, rigid }
+    }
+
+    /// What a part of a table is solved on: the nodes around these lateral intervals, of the records and of the rigid
+    /// maps.
+    pub(super) fn around(&self, lateral: &[usize]) -> Self {
+        let parts = usize::from(REFINEMENT[0]);
+        let taken = |nodes: &[f32], parts: usize| {
+            let wanted: BTreeSet<usize> = lateral.iter().flat_map(|&cell| parts * cell..=parts * (cell + 1)).collect();
+            wanted.into_iter().map(|i| nodes[i]).collect::<Vec<f32>>()
+        };
+        let [rigid, yaw, roll] = &self.rigid;
+        Self {
+            lateral: taken(&self.lateral, 1),
+            rigid: [taken(rigid, parts), yaw.clone(), roll.clone()],
+            ..self.clone()
+        }
     }
 
     /// Evenly spaced axes by counts.

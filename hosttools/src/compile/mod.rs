@@ -10,6 +10,8 @@ mod fit;
 mod quantise;
 mod rigid_maps;
 mod sampler;
+mod shard;
+mod solved;
 mod stencil;
 mod trial;
 
@@ -20,6 +22,7 @@ use sha2::{Digest, Sha256};
 pub use adaptive::Bound;
 pub use axes::{Axes, Uniform};
 pub use budget::{Budget, ChannelBudget};
+pub use shard::{Part, Settled, Shard, merge};
 
 use crate::contact::{Curvature, Dimension, SlotState};
 use crate::error::{Error, Result};
@@ -28,6 +31,10 @@ use crate::pair::Pair;
 use crate::recipe::{NodeValues, Nodes, Recipe};
 use crate::verify;
 use sampler::Sampler;
+use solved::Solved;
+
+/// The program and its version, as they stand in every table.
+pub const GENERATOR: &str = concat!("flangeway-host ", env!("CARGO_PKG_VERSION"));
 
 /// Poses and lines for the error figures that the compiler writes into the header, and their seed.
 const FIGURE_SAMPLES: usize = 4000;
@@ -55,19 +62,19 @@ pub struct Compiled {
 /// When the axes do not fit the byte budget, or a wheel misses its rail inside the recipe's ranges.
 pub fn compile(recipe: &Recipe, pair: &Pair, uniform: Option<Uniform>) -> Result<Compiled> {
     let mut compiler = Compiler::new(recipe, pair);
-    let grid = &recipe.grid;
-    let axes = [grid.lateral_m, grid.yaw_rad, grid.vertical_m, grid.roll_rad];
-    let (axes, bound) = match uniform {
-        Some(uniform) => (Axes::uniform(recipe, uniform), Bound::Counts),
-        None if axes.iter().any(|axis| axis.nodes == Nodes::Auto) => adaptive::refine(recipe, &mut compiler)?,
-        None => (Axes::coarsest(recipe, pair.sides())?, Bound::Counts),
-    };
-    let table = compiler.assemble(axes, grid.node_values)?;
+    let (axes, bound) = compiler.settle(uniform)?;
+    let table = compiler.assemble(axes, recipe.grid.node_values)?;
+    finish(recipe, pair, table, bound)
+}
+
+/// Measures a table and puts the figures into its image.
+fn finish(recipe: &Recipe, pair: &Pair, table: Assembled, bound: Bound) -> Result<Compiled> {
     let view = ContactTable::new(&table.image).map_err(|e| Error::field("", "table", e.to_string()))?;
     let measured = verify::measure(&view, table.image.len(), pair, FIGURE_SAMPLES, FIGURE_LINES, FIGURE_SEED);
     let errors = measured.report.figures();
     let budget = budget::measure(&table, &view, &measured.samples);
-    Ok(Compiled { image: compiler.image(&table, errors)?, axes: table.axes, errors, budget, bound })
+    let image = image(recipe, pair, &table.axes, &table.sides, errors)?;
+    Ok(Compiled { image, axes: table.axes, errors, budget, bound })
 }
 
 /// One side, compiled.
@@ -87,24 +94,23 @@ struct Assembled {
     image: Vec<u8>,
 }
 
+impl Assembled {
+    fn new(recipe: &Recipe, pair: &Pair, axes: Axes, sides: Vec<CompiledSide>) -> Result<Self> {
+        let image = image(recipe, pair, &axes, &sides, ErrorFigures::default())?;
+        Ok(Self { axes, sides, image })
+    }
+}
+
 impl CompiledSide {
-    fn new(sampler: &Sampler<'_>, pair: &Pair, axes: &Axes, values: NodeValues) -> Result<Self> {
-        let (roll, vertical) = rigid_maps::maps(sampler, axes);
-        let mut nodes: Vec<[SlotState; SLOTS]> = Vec::with_capacity(axes.nodes());
-        for &u in &axes.lateral {
-            for &yaw in &axes.yaw {
-                for &roll in &axes.roll {
-                    nodes.extend(axes.vertical.iter().map(|&z| sampler.states(u, yaw, roll, z)));
-                }
-            }
-        }
+    fn new(pair: &Pair, side: Side, axes: &Axes, values: NodeValues, solved: Solved) -> Self {
+        let Solved { roll, vertical, mut nodes, points } = solved;
         borrow_geometry(&mut nodes, axes);
         if values == NodeValues::Fitted {
-            fit::fit(&fit::Drawing::new(pair, sampler.side, axes, &roll, &vertical)?, axes, &mut nodes);
+            fit::fit(&points, axes, &mut nodes);
         }
-        let scales = quantise::scales(&nodes, pair.body(sampler.side).boundaries());
+        let scales = quantise::scales(&nodes, pair.body(side).boundaries());
         let records = nodes.par_iter().map(|states| quantise::record(states, &scales)).collect();
-        Ok(Self { nodes, roll, vertical, records, scales })
+        Self { nodes, roll, vertical, records, scales }
     }
 
     fn parts(&self) -> SideParts<'_> {
@@ -154,17 +160,21 @@ impl<'a> Compiler<'a> {
     fn assemble(&mut self, axes: Axes, values: NodeValues) -> Result<Assembled> {
         let mut sides = Vec::with_capacity(self.samplers.len());
         for sampler in &mut self.samplers {
-            sampler.prepare(&axes)?;
-            sides.push(CompiledSide::new(sampler, self.pair, &axes, values)?);
+            let solved = Solved::new(sampler, self.pair, &axes, values)?;
+            sides.push(CompiledSide::new(self.pair, sampler.side, &axes, values, solved));
         }
-        let mut assembled = Assembled { axes, sides, image: Vec::new() };
-        assembled.image = self.image(&assembled, ErrorFigures::default())?;
-        Ok(assembled)
+        Assembled::new(self.recipe, self.pair, axes, sides)
     }
 
-    /// The image of a table, with its error figures.
-    fn image(&self, table: &Assembled, errors: ErrorFigures) -> Result<Vec<u8>> {
-        image(self.recipe, self.pair, &table.axes, &table.sides, errors)
+    /// The axes that the recipe asks for, or the counts given instead.
+    fn settle(&mut self, uniform: Option<Uniform>) -> Result<(Axes, Bound)> {
+        let (recipe, grid) = (self.recipe, &self.recipe.grid);
+        let axes = [grid.lateral_m, grid.yaw_rad, grid.vertical_m, grid.roll_rad];
+        Ok(match uniform {
+            Some(uniform) => (Axes::uniform(recipe, uniform), Bound::Counts),
+            None if axes.iter().any(|axis| axis.nodes == Nodes::Auto) => adaptive::refine(recipe, self)?,
+            None => (Axes::coarsest(recipe, self.pair.sides())?, Bound::Counts),
+        })
     }
 }
 
@@ -192,7 +202,7 @@ fn image(recipe: &Recipe, pair: &Pair, axes: &Axes, sides: &[CompiledSide], erro
     let Some(right) = sides.first() else { return Err(Error::field("", "sides", "a table has a right side")) };
     let material = recipe.material();
     let header = Header {
-        generator: concat!("flangeway-host ", env!("CARGO_PKG_VERSION")),
+        generator: GENERATOR,
         solver: &solver,
         recipe_sha256: recipe_hash(recipe),
         gauge: recipe.rail.gauge_m.unwrap_or(0.0),

@@ -6,7 +6,7 @@ use flangeway::SLOTS;
 use super::axes::Axes;
 
 /// A place in the table.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
 pub(super) struct Place {
     /// Cell: lateral, yaw, roll, vertical.
     cell: [u16; 4],
@@ -17,6 +17,12 @@ pub(super) struct Place {
 }
 
 impl Place {
+    /// Whether the place lies in a table of these axes.
+    pub(super) fn is_in(&self, axes: &Axes) -> bool {
+        let nodes = [&axes.lateral, &axes.yaw, &axes.roll, &axes.vertical];
+        self.cell.iter().zip(nodes).all(|(&cell, nodes)| usize::from(cell) + 1 < nodes.len())
+    }
+
     /// Where coordinates lie on the records' axes (lateral, yaw, roll offset, vertical).
     pub(super) fn new(places: &[flangeway::Place; 4]) -> Self {
         let [u, yaw, roll, vertical] = places;

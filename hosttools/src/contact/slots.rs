@@ -40,7 +40,7 @@ const WIDEST_AVERAGE: f64 = 5e-3;
 const LEANING: f64 = 1e-10;
 
 /// One slot of a wheel: what the table stores of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SlotState {
     /// Signed indentation δ (m): the greatest overlap in the slot's region.
     pub indentation: f64,

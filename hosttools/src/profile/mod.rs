@@ -29,7 +29,7 @@ pub use rails::{RailHead, rail_54e1, rail_60e1};
 pub use s1002::{s1002_height, s1002_slope};
 
 /// What a profile belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, clap::ValueEnum, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ProfileKind {
     /// A wheel: flange at negative y, flange tip at the largest z.
@@ -122,10 +122,7 @@ impl Profile {
             return Self::built_in(spec, kind, options);
         }
         let path = base.join(spec);
-        let bytes = std::fs::read(&path).map_err(|e| {
-            Error::file(&path, format!("cannot be read ({e}); the built-in profiles are {}", BUILT_INS.join(", ")))
-        })?;
-        Self::parse(&path, &bytes, kind, options)
+        Self::parse(&path, &read_file(&path)?, kind, options)
     }
 
     /// Reads a profile from a file's bytes; `path` gives its name, its extension, and the errors' place.
@@ -162,6 +159,16 @@ impl Profile {
             _ => Ok(profile),
         }
     }
+}
+
+/// Contents of a profile file.
+///
+/// # Errors
+/// When it cannot be read; the message names the built-in profiles, which it may have been meant for.
+pub fn read_file(path: &Path) -> Result<Vec<u8>> {
+    std::fs::read(path).map_err(|e| {
+        Error::file(path, format!("cannot be read ({e}); the built-in profiles are {}", BUILT_INS.join(", ")))
+    })
 }
 
 /// SHA-256 of coordinates as little-endian `f64`.

@@ -1,5 +1,6 @@
 //! The report of a table: what it was made of, how good it is, and what the contact looks like. One page, one file.
 
+pub mod campaign;
 mod errors;
 mod heat;
 mod page;

@@ -30,8 +30,8 @@ use crate::contact::SlotState;
 use crate::hertz::normal_force;
 use crate::verify::LOADS;
 use least_squares::{Gain, Objective, Values, fit as least_squares};
-pub(super) use points::Drawing;
-use points::{Point, Points};
+use points::Point;
+pub(super) use points::{Drawing, Points};
 
 /// Rounds of fitting δ and C, each weighing the poses by the errors of the one before.
 const ROUNDS: usize = 3;
@@ -44,10 +44,21 @@ const LEAST_DEPTH: f64 = 3e-6;
 /// Gap (m) from which on the exact indentation of a slot does not matter.
 const OUT_OF_REACH: f64 = 0.2e-3;
 
-/// Replaces the sampled node values of a side by fitted ones.
-pub(super) fn fit(drawing: &Drawing<'_>, axes: &Axes, samples: &mut [[SlotState; SLOTS]]) {
+/// The poses that the node values in the cells of these lateral intervals are fitted to, by interval; the samples at
+/// those cells' nodes must be there.
+pub(super) fn draw(
+    drawing: &Drawing<'_>,
+    axes: &Axes,
+    samples: &[[SlotState; SLOTS]],
+    lateral: &[usize],
+) -> Vec<Points> {
+    let sampled = Fit { stencil: Stencil::new(axes), nodes: Nodes::of(samples) };
+    drawing.points(lateral, |place, point| sampled.error(place, point).abs())
+}
+
+/// Replaces the sampled node values of a side by ones fitted to the poses of all its cells.
+pub(super) fn fit(Points { places, points }: &Points, axes: &Axes, samples: &mut [[SlotState; SLOTS]]) {
     let mut fit = Fit { stencil: Stencil::new(axes), nodes: Nodes::of(samples) };
-    let Points { places, points } = drawing.points(|place, point| fit.error(place, point).abs());
     for round in 0..ROUNDS {
         let weight = |(place, point): (&Place, &Point)| {
             let error = fit.error(place, point) / TOLERATED;
@@ -55,11 +66,11 @@ pub(super) fn fit(drawing: &Drawing<'_>, axes: &Axes, samples: &mut [[SlotState;
             f64::from(point.weight) * robust / point.force().max(LOADS[0])
         };
         // The weight of a newton.
-        let weights: Vec<f64> = places.par_iter().zip(&points).map(weight).collect();
-        fit.indentations(&places, &points, &weights);
-        fit.stiffnesses(&places, &points, &weights);
+        let weights: Vec<f64> = places.par_iter().zip(points).map(weight).collect();
+        fit.indentations(places, points, &weights);
+        fit.stiffnesses(places, points, &weights);
     }
-    let changes: Vec<Values> = GEOMETRY.par_iter().map(|&channel| fit.geometry(&places, &points, channel)).collect();
+    let changes: Vec<Values> = GEOMETRY.par_iter().map(|&channel| fit.geometry(places, points, channel)).collect();
     for (&channel, change) in GEOMETRY.iter().zip(&changes) {
         fit.nodes.add_within(channel, change);
     }

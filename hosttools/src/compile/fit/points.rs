@@ -29,8 +29,8 @@ const LARGEST_LOAD: f64 = 1.3 * LOADS[1];
 const SEED: u64 = 0xf17;
 
 /// A pose by the direct solver.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Point {
+#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
+pub(in crate::compile) struct Point {
     /// Square root of its share of the table's volume.
     pub(super) weight: f32,
     /// Channels of the slots that are near the rail.
@@ -51,10 +51,18 @@ impl Point {
 }
 
 /// Poses and where they lie.
-#[derive(Debug, Default)]
-pub(super) struct Points {
-    pub(super) places: Vec<Place>,
-    pub(super) points: Vec<Point>,
+#[derive(Debug, Default, serde::Serialize, serde::Deserialize)]
+pub(in crate::compile) struct Points {
+    pub(in crate::compile) places: Vec<Place>,
+    pub(in crate::compile) points: Vec<Point>,
+}
+
+impl Points {
+    /// Appends the poses of the cells that follow.
+    pub(in crate::compile) fn append(&mut self, mut next: Self) {
+        self.places.append(&mut next.places);
+        self.points.append(&mut next.points);
+    }
 }
 
 /// Draws poses in the cells of a side's table.
@@ -90,14 +98,16 @@ impl<'a> Drawing<'a> {
         })
     }
 
-    /// All poses; `error` tells how far the table is off at one. None where the vertical axis ends without contact.
-    pub(super) fn points(&self, error: impl Fn(&Place, &Point) -> f64 + Sync) -> Points {
+    /// The poses of the cells in these intervals of the lateral axis, one interval after the other; `error` tells how
+    /// far the table is off at one. None where the vertical axis ends without contact.
+    pub(super) fn points(&self, lateral: &[usize], error: impl Fn(&Place, &Point) -> f64 + Sync) -> Vec<Points> {
         if self.highest() <= 0.0 {
-            return Points::default();
+            return lateral.iter().map(|_| Points::default()).collect();
         }
-        let [lateral, yaw, roll] = [0, 1, 2].map(|axis| self.nodes[axis].len() - 1);
+        let [yaw, roll] = [1, 2].map(|axis| self.nodes[axis].len() - 1);
+        let plane = yaw * roll;
         let cells: Vec<[usize; 3]> =
-            (0..lateral * yaw * roll).map(|n| [n / (yaw * roll), n / roll % yaw, n % roll]).collect();
+            lateral.iter().flat_map(|&cell| (0..plane).map(move |n| [cell, n / roll, n % roll])).collect();
         let draw = |cell: &[usize; 3]| {
             let few = self.cell(*cell, COLUMNS);
             if few.iter().any(|(place, point)| error(place, point) > ROUGH) {
@@ -106,9 +116,12 @@ impl<'a> Drawing<'a> {
                 few
             }
         };
-        let drawn: Vec<Vec<(Place, Point)>> = progress::parallel(&cells, "fitting", draw).collect();
-        let (places, points) = drawn.into_par_iter().flatten_iter().unzip();
-        Points { places, points }
+        let mut drawn: Vec<Vec<(Place, Point)>> = progress::parallel(&cells, "fitting", draw).collect();
+        let together = |cells: &mut [Vec<(Place, Point)>]| {
+            let (places, points) = cells.iter_mut().flat_map(std::mem::take).unzip();
+            Points { places, points }
+        };
+        drawn.par_chunks_mut(plane).map(together).collect()
     }
 
     /// Height (m) of the highest node above touching.
