@@ -24,8 +24,9 @@ use crate::math::{arctangent, exp_negative, greater, lesser, sqrt};
 /// ```
 ///
 /// The published formulas have no moment, and with spin against the lateral creepage F_s alone would feed power in. As
-/// in the linear theory the moment takes it back, and adds the spin's own M' = G (a b)² C33 φ, shortened like F or, where that is less, by
-/// Shen, Hedrick and Elkins' cubic to 3π/16 μ N sqrt(a b), the moment of a round patch that spins in place:
+/// in the linear theory the moment takes it back, and adds the spin's own M' = G (a b)² C33 φ, shortened like F or, where
+/// that is less, by Shen, Hedrick and Elkins' cubic to 3π/16 μ N sqrt(a b), the moment of a round patch that spins in
+/// place:
 ///
 /// ```text
 /// Mz  = F_s η / s' - min(F / F_linear, cubic) M'
