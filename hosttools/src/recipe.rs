@@ -310,19 +310,30 @@ impl Recipe {
         }
     }
 
+    /// The profiles that it names, with what it says about reading them.
+    pub fn named_profiles(&self) -> Vec<(ProfileKind, &str, ReadOptions)> {
+        let mut named = vec![
+            (ProfileKind::Wheel, &*self.wheel.profile, self.wheel.options()),
+            (ProfileKind::Rail, &*self.rail.profile, self.rail.options()),
+        ];
+        let left = [(ProfileKind::Wheel, &self.wheel.left), (ProfileKind::Rail, &self.rail.left)];
+        named.extend(left.into_iter().filter_map(|(kind, other)| {
+            let other = other.as_ref()?;
+            Some((kind, &*other.profile, other.options()))
+        }));
+        named
+    }
+
     /// Contents of all profile files that it names.
     ///
     /// # Errors
     /// When one cannot be read.
     pub fn read_profiles(&self) -> Result<BTreeMap<String, Vec<u8>>> {
-        let left = [self.wheel.left.as_ref(), self.rail.left.as_ref()];
-        let names = [&self.wheel.profile, &self.rail.profile].into_iter();
-        let names = names.chain(left.into_iter().flatten().map(|other| &other.profile)).filter(|n| !is_built_in(n));
-        let content = |name: &String| match self.profiles.get(name) {
-            Some(bytes) => Ok((name.clone(), bytes.clone())),
-            None => Ok((name.clone(), read_file(&self.folder().join(name))?)),
+        let content = |(_, name, _): (ProfileKind, &str, ReadOptions)| match self.profiles.get(name) {
+            Some(bytes) => Ok((name.to_owned(), bytes.clone())),
+            None => Ok((name.to_owned(), read_file(&self.folder().join(name))?)),
         };
-        names.map(content).collect()
+        self.named_profiles().into_iter().filter(|(_, name, _)| !is_built_in(name)).map(content).collect()
     }
 
     /// Elastic constants.

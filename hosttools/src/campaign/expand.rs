@@ -190,25 +190,18 @@ impl Shelf<'_> {
                 Err(e) => return broken(e.to_string()),
             }
         }
-        let left = |other: &crate::recipe::OtherProfile| (other.profile.clone(), other.options());
-        let mut used = vec![
-            (ProfileKind::Wheel, (recipe.wheel.profile.clone(), recipe.wheel.options())),
-            (ProfileKind::Rail, (recipe.rail.profile.clone(), recipe.rail.options())),
-        ];
-        used.extend(recipe.wheel.left.as_ref().map(|other| (ProfileKind::Wheel, left(other))));
-        used.extend(recipe.rail.left.as_ref().map(|other| (ProfileKind::Rail, left(other))));
-        for (kind, (spec, options)) in used {
-            let file = files.get(&spec).unwrap_or(&spec).clone();
-            if let Some(reason) = self.wrong(&recipe, &spec, &file, kind, &options) {
+        for (kind, spec, options) in recipe.named_profiles() {
+            let file = files.get(spec).map_or(spec, String::as_str);
+            if let Some(reason) = self.wrong(&recipe, spec, file, kind, &options) {
                 return broken(reason);
             }
         }
         let hash = |(name, bytes): (&String, &Vec<u8>)| (name.clone(), hex(&Sha256::digest(bytes)));
         let profiles: BTreeMap<String, String> = recipe.profiles.iter().map(hash).collect();
-        let names = [recipe.wheel.profile.clone(), recipe.rail.profile.clone()];
         let id = identifier(&text, &profiles);
         let cost = super::slurm::cost(&recipe);
-        let [wheel, rail] = names;
+        let Recipe { wheel, rail, .. } = recipe;
+        let (wheel, rail) = (wheel.profile, rail.profile);
         Ok(Planned::Table(Box::new(Entry { id, label, wheel, rail, varies, cost, profiles, recipe: text })))
     }
 
