@@ -6,6 +6,7 @@ pub mod inspect;
 pub mod lookup;
 pub mod profile;
 pub mod quickstart;
+pub mod reproduce;
 pub mod rig;
 pub mod rigid;
 pub mod simulate;
@@ -49,6 +50,8 @@ enum Command {
     Profile(profile::ProfileArgs),
     /// S1002 on 60E1: compile, verify, look up, and write a report, in well under a minute
     Quickstart(quickstart::QuickstartArgs),
+    /// Make the paper's figures again, and check its claims
+    Reproduce(reproduce::ReproduceArgs),
     /// Run a fixed-step loop as a test rig does, and report missed deadlines and step times
     Rig(rig::RigArgs),
     /// Rigid contact: height and roll of the wheelset over lateral position and yaw
@@ -73,6 +76,7 @@ impl Cli {
             Command::Lookup(args) => lookup::run(args)?,
             Command::Profile(args) => profile::run(args)?,
             Command::Quickstart(args) => quickstart::run(args)?,
+            Command::Reproduce(args) => reproduce::run(args)?,
             Command::Rig(args) => rig::run(args)?,
             Command::Rigid(args) => rigid::run(args)?,
             Command::Simulate(args) => simulate::run(args)?,
