@@ -3,7 +3,7 @@
 use flangeway::{Pose, Side, Slot};
 use rayon::prelude::*;
 
-use super::plot::{Curve, Panel, csv, draw};
+use super::plot::{Panel, csv, draw};
 use super::runs::Grounds;
 use super::{Check, Plate};
 use crate::error::Result;
@@ -90,11 +90,9 @@ impl Map {
             let corner = [1e3 * (y - 0.5 * self.step), 1e3 * (yaw - 0.5 * height), 1e3 * self.step, 1e3 * height];
             (corner, band.ink())
         };
-        // The corners of the whole map, so that the axes show all of it.
-        let frame = vec![(1e3 * range[0], 0.0), (1e3 * range[1], 1e3 * self.yaws[self.yaws.len() - 1])];
-        let curves = vec![Curve::new(Mark::Dashes, plotters::style::WHITE, frame)];
-        let mut panel = Panel::new(title, ["lateral position y (mm)", "yaw (mrad)"], curves);
-        panel.curves[0].points.truncate(2);
+        let mut panel = Panel::new(title, ["lateral position y (mm)", "yaw (mrad)"], Vec::new());
+        let largest = 1e3 * self.yaws[self.yaws.len() - 1];
+        panel.ranges = Some([1e3 * range[0]..1e3 * range[1], -0.02 * largest..1.05 * largest]);
         panel.cells = self.cells.iter().map(cell).collect();
         let entries: Vec<_> = bands.iter().map(|(band, text)| (Mark::Dot, band.ink(), text.clone())).collect();
         draw(name, &entries, &[vec![panel]])
@@ -112,7 +110,7 @@ impl Map {
 
 /// Figure 8.
 pub(super) fn simplified(grounds: &Grounds) -> Result<Plate> {
-    const RANGE: [f64; 2] = [0.0, 4e-3];
+    const RANGE: [f64; 2] = [1e-3, 3e-3];
     let map = map(&grounds.simplified.pair, RANGE, 5e-6, 20e-3, 40);
     // With two regions alone, the flange line lies in the second slot.
     let extents: Vec<_> = map.yaws.iter().filter_map(|yaw| map.extent(Band::Tread, *yaw)).collect();
@@ -171,7 +169,7 @@ pub(super) fn simplified(grounds: &Grounds) -> Result<Plate> {
 
 /// Figure 12.
 pub(super) fn urban(grounds: &Grounds) -> Result<Plate> {
-    const RANGE: [f64; 2] = [0.0, 8e-3];
+    const RANGE: [f64; 2] = [2e-3, 8e-3];
     let map = map(&grounds.urban.pair, RANGE, 20e-6, 40e-3, 40);
     let (tread, flange) = (1e3 * map.width(Band::Tread), 1e3 * map.width(Band::Flange));
     let place = |band| map.extent(band, 0.0).or_else(|| map.extent(band, map.yaws[map.yaws.len() / 2]));

@@ -48,7 +48,8 @@ pub(super) fn regions(runs: &Runs) -> Result<Plate> {
             1e2 * third
         ),
         difference: "The three regions take part one after the other, and two at a time in the curve. Three at once is a \
-                     matter of the profiles, and the S1002 stands in for DT14.",
+                     matter of the profiles, and the S1002 stands in for DT14. The peaks at 14 and 39 m are the kinks at \
+                     both ends of the linear cant ramp, which track and vehicle take without elasticity of their own.",
         checks: vec![
             Check {
                 figure: 13,

@@ -43,7 +43,11 @@ pub(super) fn plate(grounds: &Grounds) -> Result<Plate> {
     let sweep = ground.pair.with_settings(Settings { method: Method::Sweep, ..settings });
     let table = ground.table()?.ok_or_else(|| crate::error::Error::field("", "figure 15", "there is no table"))?;
     let solve = |pair: &Pair, poses: &[Pose]| {
-        time(poses.len(), || poses.iter().for_each(|pose| drop(black_box(pair.solve(Side::Right, black_box(pose))))))
+        time(poses.len(), || {
+            for pose in poses {
+                black_box(pair.solve(Side::Right, black_box(pose)));
+            }
+        })
     };
     let round = || {
         // The rigid contact from its own table, as in the paper.

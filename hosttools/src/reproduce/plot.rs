@@ -6,7 +6,7 @@ use plotters::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::report::style::{
-    Axis, GREY, LEGEND, MARGIN, Mark, WIDTH, dashes, figure, legend, line, panel, panel_height, px,
+    Axis, GREY, LEGEND, Mark, dashes, figure, legend, line, panel, panel_height, px,
 };
 
 /// Height of a plot (shown pixels).
@@ -32,14 +32,19 @@ pub(super) struct Panel {
     pub(super) curves: Vec<Curve>,
     /// Cells `[x, y, width, height]` filled with an ink, below the curves.
     pub(super) cells: Vec<([f64; 4], RGBColor)>,
+    /// Ranges of x and y where they are not to follow from the data.
+    pub(super) ranges: Option<[Range<f64>; 2]>,
 }
 
 impl Panel {
     pub(super) fn new(title: &str, labels: [&'static str; 2], curves: Vec<Curve>) -> Self {
-        Self { title: title.into(), labels, curves, cells: Vec::new() }
+        Self { title: title.into(), labels, curves, cells: Vec::new(), ranges: None }
     }
 
     fn range(&self, axis: usize) -> Range<f64> {
+        if let Some(ranges) = &self.ranges {
+            return ranges[axis].clone();
+        }
         let of = |&(x, y): &(f64, f64)| if axis == 0 { x } else { y };
         let curves = self.curves.iter().flat_map(|curve| curve.points.iter().map(of));
         let cells = self.cells.iter().flat_map(|(cell, _)| [cell[axis], cell[axis] + cell[axis + 2]]);
@@ -105,7 +110,6 @@ pub(super) fn bars(name: &str, title: &str, label: &str, bars: &[(&str, f64, RGB
             let text = format!("{name}: {}", significant(*value));
             chart.draw_series([Text::new(text, (middle, decades(*value) + 0.06 * (most - least)), style)])?;
         }
-        let _ = (MARGIN, WIDTH);
         Ok(())
     })
 }
