@@ -2,6 +2,7 @@
 //! progress to stderr.
 
 pub mod compile;
+pub mod creep;
 pub mod inspect;
 pub mod lookup;
 pub mod profile;
@@ -42,6 +43,8 @@ pub enum Outcome {
 enum Command {
     /// Compile a contact table from a recipe
     Compile(compile::CompileArgs),
+    /// Creep forces of contacts by one of four laws
+    Creep(creep::CreepArgs),
     /// Print what a table says of itself
     Inspect(inspect::InspectArgs),
     /// Contacts of poses by a table
@@ -72,6 +75,7 @@ impl Cli {
     pub fn run(&self) -> Result<Outcome> {
         match &self.command {
             Command::Compile(args) => compile::run(args)?,
+            Command::Creep(args) => creep::run(args)?,
             Command::Inspect(args) => inspect::run(args)?,
             Command::Lookup(args) => lookup::run(args)?,
             Command::Profile(args) => profile::run(args)?,
