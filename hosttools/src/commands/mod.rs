@@ -10,8 +10,10 @@ pub mod merge;
 pub mod pil;
 pub mod profile;
 pub mod quickstart;
+pub mod reproduce;
 pub mod rig;
 pub mod rigid;
+pub mod simulate;
 pub mod solve;
 pub mod verify;
 
@@ -60,10 +62,14 @@ enum Command {
     Profile(profile::ProfileArgs),
     /// S1002 on 60E1: compile, verify, look up, and write a report, in well under a minute
     Quickstart(quickstart::QuickstartArgs),
+    /// Make the paper's figures again, and check its claims
+    Reproduce(reproduce::ReproduceArgs),
     /// Run a fixed-step loop as a test rig does, and report missed deadlines and step times
     Rig(rig::RigArgs),
     /// Rigid contact: height and roll of the wheelset over lateral position and yaw
     Rigid(rigid::RigidArgs),
+    /// Run a vehicle along a track: wheelset or bogie, contact by table or direct solver
+    Simulate(simulate::SimulateArgs),
     /// Contacts of poses by the direct elastic solver
     Solve(solve::SolveArgs),
     /// Measure a table against the direct solver over random poses
@@ -86,8 +92,10 @@ impl Cli {
             Command::Merge(args) => merge::run(args)?,
             Command::Profile(args) => profile::run(args)?,
             Command::Quickstart(args) => quickstart::run(args)?,
+            Command::Reproduce(args) => reproduce::run(args)?,
             Command::Rig(args) => rig::run(args)?,
             Command::Rigid(args) => rigid::run(args)?,
+            Command::Simulate(args) => simulate::run(args)?,
             Command::Solve(args) => solve::run(args)?,
             Command::Verify(args) => return verify::run(args),
         }

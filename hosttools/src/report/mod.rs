@@ -3,14 +3,16 @@
 pub mod campaign;
 mod errors;
 mod heat;
-mod page;
+pub(crate) mod page;
+pub(crate) mod plot;
 mod positions;
 mod profiles;
 pub mod rig;
 mod rolling;
-mod style;
+pub(crate) mod style;
 mod sweep;
 mod transfer;
+pub(crate) mod vehicle;
 pub mod verify;
 
 use flangeway::ContactTable;
