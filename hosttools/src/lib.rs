@@ -5,6 +5,7 @@ pub mod compile;
 pub mod contact;
 pub mod contacts;
 pub mod curve;
+pub mod dynamics;
 pub mod error;
 pub mod hertz;
 pub mod image;

@@ -229,6 +229,20 @@ impl<'de> Deserialize<'de> for Nodes {
     }
 }
 
+/// What a TOML file holds; `path` names it in errors, with the line.
+///
+/// # Errors
+/// When it is no valid TOML, or a key is unknown, missing or of another type.
+pub fn parse_toml<T: serde::de::DeserializeOwned>(text: &str, path: &Path) -> Result<T> {
+    toml::from_str(text).map_err(|e| {
+        let message = e.message().replace('\n', " ");
+        match e.span() {
+            Some(span) => Error::line(path, text[..span.start].matches('\n').count() + 1, message),
+            None => Error::file(path, message),
+        }
+    })
+}
+
 fn gauge_height() -> f64 {
     0.014
 }
@@ -273,13 +287,7 @@ impl Recipe {
     /// # Errors
     /// As [`Recipe::load`].
     pub fn parse(text: &str, path: &Path) -> Result<Self> {
-        let mut recipe: Self = toml::from_str(text).map_err(|e| {
-            let message = e.message().replace('\n', " ");
-            match e.span() {
-                Some(span) => Error::line(path, text[..span.start].matches('\n').count() + 1, message),
-                None => Error::file(path, message),
-            }
-        })?;
+        let mut recipe: Self = parse_toml(text, path)?;
         recipe.path = path.into();
         recipe.text = text.into();
         recipe.check()?;

@@ -59,6 +59,13 @@ impl Flags {
         self.0
     }
 
+    /// The flags with these [`Flags::bits`]; bits without a meaning are left out.
+    #[inline]
+    #[must_use]
+    pub const fn from_bits(bits: u8) -> Self {
+        Self(bits & 0x7f)
+    }
+
     /// The flags of the records' axes, bit i for axis i.
     #[inline]
     pub(crate) const fn of_axes(bits: u8) -> Self {

@@ -59,3 +59,8 @@ pub static ALL: [Committed; 5] = [
     Committed { name: "simplified_pair", recipe: SIMPLIFIED_PAIR, image: &SIMPLIFIED_PAIR_IMAGE.0 },
     Committed { name: "urban_metre_gauge", recipe: URBAN_METRE_GAUGE, image: &URBAN_METRE_GAUGE_IMAGE.0 },
 ];
+
+/// Scenario of the paper's section 5: a single wheelset with simplified profiles, R = 1000 m at 15 m/s.
+pub const WHEELSET_R1000: &str = include_str!("../scenarios/wheelset_r1000.toml");
+/// Scenario of the paper's section 6: a metre-gauge bogie, R = 60 m at 15 m/s.
+pub const BOGIE_R60: &str = include_str!("../scenarios/bogie_r60.toml");

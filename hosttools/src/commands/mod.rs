@@ -8,6 +8,7 @@ pub mod profile;
 pub mod quickstart;
 pub mod rig;
 pub mod rigid;
+pub mod simulate;
 pub mod solve;
 pub mod verify;
 
@@ -52,6 +53,8 @@ enum Command {
     Rig(rig::RigArgs),
     /// Rigid contact: height and roll of the wheelset over lateral position and yaw
     Rigid(rigid::RigidArgs),
+    /// Run a vehicle along a track: wheelset or bogie, contact by table or direct solver
+    Simulate(simulate::SimulateArgs),
     /// Contacts of poses by the direct elastic solver
     Solve(solve::SolveArgs),
     /// Measure a table against the direct solver over random poses
@@ -72,6 +75,7 @@ impl Cli {
             Command::Quickstart(args) => quickstart::run(args)?,
             Command::Rig(args) => rig::run(args)?,
             Command::Rigid(args) => rigid::run(args)?,
+            Command::Simulate(args) => simulate::run(args)?,
             Command::Solve(args) => solve::run(args)?,
             Command::Verify(args) => return verify::run(args),
         }

@@ -114,10 +114,12 @@ mod tests {
 
     #[test]
     fn a_row_left_out_is_met_from_its_neighbours() {
-        // Interpolation over twice the table's step errs four times as much as over one.
-        let mut worst = [0.0_f32; 3];
+        // Interpolation over twice the table's step errs about four times as much as over one.
+        let mut worst = [[0.0_f32; 3]; 2];
         for row in 1..ROWS - 1 {
-            for (kind, worst) in worst.iter_mut().enumerate() {
+            // Rows from a/b = 0.2 to 5 with both their neighbours, and the rest.
+            let rest = usize::from(row < 2 || row > ROWS - 3);
+            for (kind, worst) in worst[rest].iter_mut().enumerate() {
                 for column in 0..3 {
                     let at = |row: usize| 1.0 / TABLE[row][kind][column];
                     let met = 1.0 / (0.5 * (at(row - 1) + at(row + 1)));
@@ -125,7 +127,7 @@ mod tests {
                 }
             }
         }
-        std::println!("left-out rows: C11 {:.3}, C22 {:.3}, C23 {:.3}", worst[0], worst[1], worst[2]);
-        assert!(worst[0] < 0.04 && worst[1] < 0.04 && worst[2] < 0.08);
+        std::println!("left-out rows, a/b = 0.2 to 5 and the ends: {worst:.3?}");
+        assert!(worst[0].iter().all(|w| *w < 0.05) && worst[1].iter().all(|w| *w < 0.11));
     }
 }
