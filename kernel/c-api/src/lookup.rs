@@ -2,7 +2,7 @@
 
 use flangeway::{Contacts, Flags, Side};
 
-use crate::pointer::{check, read, write};
+use crate::pointer::{check, place, read};
 use crate::status::Status;
 use crate::table::{Table, view};
 use crate::types::{Pose, Wheel, WheelContacts, side};
@@ -41,7 +41,7 @@ pub unsafe extern "C" fn flangeway_contacts(
         let mut found = Contacts::NONE;
         table.contacts_into(side(wheel_side)?, &(&pose).into(), &mut found);
         // SAFETY: the caller's promise.
-        unsafe { write(contacts, (&found).into()) }?;
+        unsafe { place(contacts, WheelContacts::NONE) }?.fill(&found);
         valid(&found)
     };
     Status::of(look())
@@ -74,17 +74,17 @@ pub unsafe extern "C" fn flangeway_contacts_many(
         for start in (0..count).step_by(TOGETHER) {
             let together = TOGETHER.min(count - start);
             let mut asked = [(Side::Right, flangeway::Pose::default()); TOGETHER];
-            for (index, place) in asked.iter_mut().enumerate().take(together) {
+            for (index, ask) in asked.iter_mut().enumerate().take(together) {
                 // SAFETY: inside the array, by the caller's promise.
                 let wheel = unsafe { read(wheels.wrapping_add(start + index)) }?;
-                *place = (side(wheel.side)?, (&wheel.pose).into());
+                *ask = (side(wheel.side)?, (&wheel.pose).into());
             }
             let mut found = [const { Contacts::NONE }; TOGETHER];
             let asked = asked.get(..together).unwrap_or(&[]);
             table.contacts_many(asked, &mut found);
             for (index, one) in found.iter().enumerate().take(together) {
                 // SAFETY: inside the array, by the caller's promise.
-                unsafe { write(contacts.wrapping_add(start + index), one.into()) }?;
+                unsafe { place(contacts.wrapping_add(start + index), WheelContacts::NONE) }?.fill(one);
                 outcome = outcome.and(valid(one));
             }
         }

@@ -1,20 +1,25 @@
-//! Pointers from C: checked as far as a pointer can be, then read or written whole. No reference to the caller's memory
-//! is made (but to a loaded table), so arguments may overlap.
+//! Pointers from C: checked as far as a pointer can be, then read or written whole. Inputs are read before outputs are
+//! written, so arguments may overlap.
 
 use crate::status::Status;
 
 /// Whether a pointer could hold `count` values: not null, aligned, and not longer than memory.
+#[inline(always)]
 pub(crate) fn check<T>(pointer: *const T, count: usize) -> Result<(), Status> {
-    if pointer.is_null() {
-        return Err(Status::Null);
-    }
-    if !pointer.is_aligned() {
-        return Err(Status::Misaligned);
+    if pointer.is_null() || !pointer.is_aligned() {
+        return Err(unusable(pointer.is_null()));
     }
     match count.checked_mul(size_of::<T>()) {
         Some(bytes) if bytes <= isize::MAX as usize => Ok(()),
         _ => Err(Status::Length),
     }
+}
+
+/// Out of the way of calls with good pointers.
+#[cold]
+#[inline(never)]
+fn unusable(null: bool) -> Status {
+    if null { Status::Null } else { Status::Misaligned }
 }
 
 /// Reads a value.
@@ -38,4 +43,16 @@ pub(crate) unsafe fn write<T: Copy>(pointer: *mut T, value: T) -> Result<(), Sta
     // SAFETY: not null and aligned by the check, the room is the caller's promise.
     unsafe { pointer.write(value) };
     Ok(())
+}
+
+/// Writes a value and gives it back to be changed where it is.
+///
+/// # Safety
+/// As [`write`], and nobody else may use the place while it is changed.
+#[inline(always)]
+pub(crate) unsafe fn place<'a, T: Copy>(pointer: *mut T, value: T) -> Result<&'a mut T, Status> {
+    // SAFETY: the caller's promise.
+    unsafe { write(pointer, value) }?;
+    // SAFETY: a value was written there; that it is nobody else's is the caller's promise.
+    Ok(unsafe { &mut *pointer })
 }

@@ -1,5 +1,7 @@
 //! Structs of the header, and how they become the kernel's.
 
+use core::mem::offset_of;
+
 use flangeway::creep::{CreepForces, Creepages, Elasticity, Friction, Patch};
 use flangeway::wheelset::{self, Rates};
 use flangeway::{Contact, Contacts, Flags, SLOTS, Side, Slot};
@@ -306,36 +308,40 @@ impl ContactPoint {
     }
 }
 
-impl From<&Contact> for ContactPoint {
+/// Numbers of a contact before its slot.
+type Numbers = [f32; 12];
+
+// The kernel's contact and the header's both begin with the same numbers in the same order.
+const _: () = assert!(
+    offset_of!(Contact, position) == offset_of!(ContactPoint, position)
+        && offset_of!(Contact, angle) == offset_of!(ContactPoint, angle)
+        && offset_of!(Contact, semi_axes) == offset_of!(ContactPoint, semi_axes)
+        && offset_of!(Contact, rail_curvature) == offset_of!(ContactPoint, rail_curvature)
+        && offset_of!(ContactPoint, slot) == size_of::<Numbers>()
+);
+
+impl ContactPoint {
+    /// Takes the kernel's contact.
     #[inline(always)]
-    fn from(contact: &Contact) -> Self {
-        Self {
-            normal_force: contact.normal_force,
-            indentation: contact.indentation,
-            position: contact.position.into(),
-            angle: contact.angle,
-            rolling_radius: contact.rolling_radius,
-            wheel_coordinate: contact.wheel_coordinate,
-            semi_axes: contact.semi_axes,
-            wheel_curvature: contact.wheel_curvature,
-            rail_curvature: contact.rail_curvature,
-            slot: contact.slot as i32,
-        }
+    fn fill(&mut self, contact: &Contact) {
+        // SAFETY: both structs are repr(C) and begin with these numbers, as asserted above. Copied at once they take a
+        // sixth of the instructions: this is most of what a call through C costs over one from Rust.
+        unsafe { (&raw mut *self).cast::<Numbers>().copy_from(core::ptr::from_ref(contact).cast(), 1) };
+        self.slot = contact.slot as i32;
     }
 }
 
 impl WheelContacts {
     pub(crate) const NONE: Self = Self { contact: [ContactPoint::NONE; FLANGEWAY_SLOTS], count: 0, flags: 0 };
-}
 
-impl From<&Contacts> for WheelContacts {
+    /// Takes the kernel's contacts in place of none.
     #[inline(always)]
-    fn from(contacts: &Contacts) -> Self {
-        let mut all = Self { count: contacts.list.len() as i32, flags: contacts.flags.bits().into(), ..Self::NONE };
-        for (place, contact) in all.contact.iter_mut().zip(contacts) {
-            *place = contact.into();
+    pub(crate) fn fill(&mut self, contacts: &Contacts) {
+        for (place, contact) in self.contact.iter_mut().zip(contacts) {
+            place.fill(contact);
         }
-        all
+        self.count = contacts.list.len() as i32;
+        self.flags = contacts.flags.bits().into();
     }
 }
 

@@ -167,7 +167,7 @@ fn both(table: &ContactTable<'_>, motion: &wheelset::Motion, law: Law, friction:
             (*creepage, *creep_force) = (slip.into(), force.into());
         }
         let loads = WheelLoads::new(side, &on_wheel);
-        wheel.contacts = contacts.into();
+        wheel.contacts.fill(contacts);
         (wheel.guiding_force, wheel.wheel_load) = (loads.guiding_force, loads.wheel_load);
         wheel.derailment_quotient = loads.ratio();
         total = total + on_wheel;

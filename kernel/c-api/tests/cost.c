@@ -15,7 +15,7 @@
 #define LIMIT 1.1
 
 double cost_rust(const unsigned char *image, size_t length, const flangeway_pose *poses, size_t count);
-double cost_c_loop(const flangeway_table *table, const flangeway_pose *poses, size_t count);
+double cost_c_loop(const flangeway_table *table, const flangeway_pose *poses, size_t count) __attribute__((noinline));
 
 static flangeway_pose poses[POSES];
 
