@@ -2,6 +2,7 @@
 //! progress to stderr.
 
 pub mod compile;
+pub mod fmu;
 pub mod inspect;
 pub mod lookup;
 pub mod profile;
@@ -41,6 +42,8 @@ pub enum Outcome {
 enum Command {
     /// Compile a contact table from a recipe
     Compile(compile::CompileArgs),
+    /// Pack a wheelset as a co-simulation unit (FMI 2.0)
+    Fmu(fmu::FmuArgs),
     /// Print what a table says of itself
     Inspect(inspect::InspectArgs),
     /// Contacts of poses by a table
@@ -69,6 +72,7 @@ impl Cli {
     pub fn run(&self) -> Result<Outcome> {
         match &self.command {
             Command::Compile(args) => compile::run(args)?,
+            Command::Fmu(args) => fmu::run(args)?,
             Command::Inspect(args) => inspect::run(args)?,
             Command::Lookup(args) => lookup::run(args)?,
             Command::Profile(args) => profile::run(args)?,
