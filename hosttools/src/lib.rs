@@ -18,6 +18,7 @@ pub mod profile_noise;
 pub mod progress;
 pub mod recipe;
 pub mod report;
+pub mod reproduce;
 pub mod rig;
 pub mod rigid;
 pub mod spline;

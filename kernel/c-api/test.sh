@@ -44,6 +44,11 @@ version() { sed -n '/^\[workspace.package\]/,/^$/s/^version = //p' "$1"; }
 cargo build --workspace --release --locked
 cargo build --release --locked --features cost --target-dir target/cost
 static=target/release/libflangeway_c.a
+if rustup target list --installed 2>/dev/null | grep -q thumbv7em-none-eabihf; then
+  cargo rustc --release --locked --target thumbv7em-none-eabihf --lib --crate-type staticlib
+else
+  echo "note: target thumbv7em-none-eabihf is not installed here; the library for firmware is left to machines that have it"
+fi
 shared=$PWD/target/release/libflangeway_c.so
 
 step "header: as cbindgen writes it"

@@ -5,12 +5,15 @@ use nalgebra::Vector3;
 use crate::contact::Contact;
 use crate::creep::{CreepForces, Creepages};
 use crate::displacement::Attitude;
-use crate::math::{at_least, sine_cosine, single};
-use crate::pose::{POSE_LIMIT, Pose, Side, WheelGeometry};
+use crate::math::{Two, at_least, sine_cosine};
+use crate::pose::{Pose, Side, WheelGeometry};
 
 /// Least speed that creepages are divided by, m/s: below it, creep forces fade into viscous ones, and at rest without
 /// rates there are none.
 pub const SPEED_FLOOR: f64 = 0.01;
+
+/// Largest magnitude of a state's number that is taken as one, in its SI unit.
+pub const STATE_LIMIT: f64 = 1e6;
 
 /// Rates of a [`Pose`], seen in the track frame that moves along with the wheelset.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -62,7 +65,7 @@ pub struct Motion {
 /// `position` is `f32`: its height above the rail plane, of millimetres, is rounded to 1e-10 m, and ξ by 3e-10 of it;
 /// across, 3e-8 m times yaw.
 ///
-/// States that are no numbers, or beyond 1e6, give no creepages.
+/// States that are no numbers, or beyond [`STATE_LIMIT`], give no creepages.
 #[must_use]
 pub fn creepages(geometry: &WheelGeometry, motion: &Motion, contact: &Contact) -> Creepages {
     let Motion { pose, rates, speed, spin, track_curvature } = *motion;
@@ -77,19 +80,26 @@ pub fn creepages(geometry: &WheelGeometry, motion: &Motion, contact: &Contact) -
     let track = Vector3::new(1.0 - track_curvature * point.y, track_curvature * point.x, 0.0) * speed;
     let velocity = Vector3::new(0.0, rates.lateral, rates.vertical) + turn.cross(&arm) + track;
     let turn_z = turn.z + speed * track_curvature;
-    let numbers = [speed, spin, rates.lateral, rates.yaw, rates.vertical, rates.roll, track_curvature];
-    let valid = numbers.iter().fold(pose.is_valid(), |valid, x| valid & (x.abs() <= 1e6))
-        & (velocity.norm_squared() + turn_z <= f64::MAX)
-        & (f64::from(contact.angle).abs() <= POSE_LIMIT);
     let per_speed = 1.0 / at_least(speed.abs(), SPEED_FLOOR);
-    // Bits, so that no branch is made of it.
-    let mask = u32::from(valid).wrapping_neg();
-    let kept = |x: f64| f32::from_bits(single(x * per_speed).to_bits() & mask);
-    Creepages {
-        longitudinal: kept(velocity.x),
-        lateral: kept(velocity.y * cos + velocity.z * sin),
-        spin: kept(turn_z * cos - turn.y * sin),
-    }
+    let longitudinal = velocity.x * per_speed;
+    let lateral = (velocity.y * cos + velocity.z * sin) * per_speed;
+    let about_normal = (turn_z * cos - turn.y * sin) * per_speed;
+    // By masks, so that no branch is made of it. Angles are clamped before they are used, so they are asked for here.
+    let limit = Two::all(STATE_LIMIT);
+    let inside = |x: f64, y: f64| Two::new([x, y]).abs().within(limit);
+    let valid = inside(speed, spin)
+        .and(inside(rates.lateral, rates.yaw))
+        .and(inside(rates.vertical, rates.roll))
+        .and(inside(track_curvature, f64::from(contact.angle)))
+        .and(inside(pose.lateral, pose.yaw))
+        .and(inside(pose.vertical, pose.roll))
+        .and(inside(point.x, point.y))
+        .and(inside(point.z, 0.0));
+    let ([longitudinal, lateral], [spin, _]) = (
+        Two::new([longitudinal, lateral]).where_all(valid).single(),
+        Two::new([about_normal, 0.0]).where_all(valid).single(),
+    );
+    Creepages { longitudinal, lateral, spin }
 }
 
 /// From the wheelset's centre, at (0, y, z - r0), to the contact point, m.

@@ -27,6 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         law: scenario.contact.creep,
         friction: scenario.contact.friction(),
         elasticity: ground.elasticity(),
+        damping: scenario.contact.damping_s_per_m,
     };
     let (track, irregularity) = (scenario.track(), scenario.irregularity(ground.half_base())?);
     let speed = scenario.run.speed_m_per_s;

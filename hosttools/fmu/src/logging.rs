@@ -55,10 +55,10 @@ impl Log {
 
     fn tell(&self, status: Status, category: *const c_char, message: &str) {
         let Some(logger) = self.logger else { return };
-        let message = text(message);
-        // SAFETY: the importer's function as the standard declares it; texts end with zero and live through the call. The
-        // message is an argument and never a format.
-        unsafe { logger(self.environment, self.name.as_ptr(), status, category, c"%s".as_ptr(), message.as_ptr()) };
+        // The message is a format of printf without arguments: not all importers take arguments.
+        let message = text(&message.replace('%', "%%"));
+        // SAFETY: the importer's function as the standard declares it; texts end with zero and live through the call.
+        unsafe { logger(self.environment, self.name.as_ptr(), status, category, message.as_ptr()) };
     }
 }
 

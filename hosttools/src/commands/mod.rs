@@ -2,11 +2,13 @@
 //! progress to stderr.
 
 pub mod compile;
+pub mod creep;
 pub mod fmu;
 pub mod inspect;
 pub mod lookup;
 pub mod profile;
 pub mod quickstart;
+pub mod reproduce;
 pub mod rig;
 pub mod rigid;
 pub mod simulate;
@@ -42,6 +44,8 @@ pub enum Outcome {
 enum Command {
     /// Compile a contact table from a recipe
     Compile(compile::CompileArgs),
+    /// Creep forces of contacts by one of four laws
+    Creep(creep::CreepArgs),
     /// Pack a wheelset as a co-simulation unit (FMI 2.0)
     Fmu(fmu::FmuArgs),
     /// Print what a table says of itself
@@ -52,6 +56,8 @@ enum Command {
     Profile(profile::ProfileArgs),
     /// S1002 on 60E1: compile, verify, look up, and write a report, in well under a minute
     Quickstart(quickstart::QuickstartArgs),
+    /// Make the paper's figures again, and check its claims
+    Reproduce(reproduce::ReproduceArgs),
     /// Run a fixed-step loop as a test rig does, and report missed deadlines and step times
     Rig(rig::RigArgs),
     /// Rigid contact: height and roll of the wheelset over lateral position and yaw
@@ -72,11 +78,13 @@ impl Cli {
     pub fn run(&self) -> Result<Outcome> {
         match &self.command {
             Command::Compile(args) => compile::run(args)?,
+            Command::Creep(args) => creep::run(args)?,
             Command::Fmu(args) => fmu::run(args)?,
             Command::Inspect(args) => inspect::run(args)?,
             Command::Lookup(args) => lookup::run(args)?,
             Command::Profile(args) => profile::run(args)?,
             Command::Quickstart(args) => quickstart::run(args)?,
+            Command::Reproduce(args) => reproduce::run(args)?,
             Command::Rig(args) => rig::run(args)?,
             Command::Rigid(args) => rigid::run(args)?,
             Command::Simulate(args) => simulate::run(args)?,

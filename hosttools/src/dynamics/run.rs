@@ -112,6 +112,7 @@ pub fn run(scenario: &Scenario, ground: &Ground, bar: &ProgressBar) -> Result<Ve
         law: scenario.contact.creep,
         friction: scenario.contact.friction(),
         elasticity: ground.elasticity(),
+        damping: scenario.contact.damping_s_per_m,
     };
     let (track, irregularity) = (scenario.track(), scenario.irregularity(ground.half_base())?);
     let line =

@@ -98,6 +98,9 @@ pub struct ContactSettings {
     /// B of Polach's falling friction, s/m.
     #[serde(default)]
     pub friction_decay_s_per_m: f64,
+    /// Damping of the contacts' approach, s/m: force is raised by this share per m/s.
+    #[serde(default)]
+    pub damping_s_per_m: f64,
     /// Stiffness (N/m) of the penalty that keeps the constraint of rigid contact.
     #[serde(default = "penalty")]
     pub penalty_n_per_m: f64,
@@ -280,6 +283,7 @@ impl Scenario {
         within("contact.friction", self.contact.friction, 0.0, 2.0)?;
         within("contact.friction_limit_ratio", self.contact.friction_limit_ratio, 0.0, 1.0)?;
         within("contact.friction_decay_s_per_m", self.contact.friction_decay_s_per_m, 0.0, 1e3)?;
+        within("contact.damping_s_per_m", self.contact.damping_s_per_m, 0.0, 100.0)?;
         within("contact.penalty_n_per_m", self.contact.penalty_n_per_m, 1e6, 1e12)?;
         within("wheelset.mass_kg", self.wheelset.mass_kg, 1.0, 1e5)?;
         within("wheelset.roll_yaw_inertia_kgm2", self.wheelset.roll_yaw_inertia_kgm2, 0.1, 1e6)?;

@@ -3,6 +3,7 @@
 use flangeway::creep::{self, CreepForces, Creepages, Elasticity, Friction, Patch, wear_index};
 use flangeway::wheelset::{Motion, WheelLoads, Wrench, contact_wrench, creepages};
 use flangeway::{Contact, Contacts, SLOTS, Side};
+use nalgebra::Vector3;
 
 use super::source::Source;
 
@@ -45,6 +46,9 @@ pub struct WheelRail<'a> {
     pub friction: Friction,
     /// Material.
     pub elasticity: Elasticity,
+    /// Damping χ of the contact's approach, s/m: what track and ballast take from a wheel that bounces on its contacts,
+    /// on a track that is rigid here. Hunt and Crossley's form, which pulls nowhere (J. Applied Mechanics 42, 1975).
+    pub damping: f64,
 }
 
 /// One contact that carries force, with its creep.
@@ -97,10 +101,11 @@ impl WheelRail<'_> {
             wheel.flags = contacts.flags.bits();
             let geometry = self.source.geometry(side);
             let mut on_wheel = Wrench::default();
-            for contact in &contacts {
+            for contact in &mut contacts.list {
+                contact.normal_force *= self.damped(geometry.nominal_radius, motion, contact);
                 let creepages = creepages(geometry, motion, contact);
                 let slip = libm::hypotf(creepages.longitudinal, creepages.lateral) * motion.speed as f32;
-                let patch = Patch::from(contact);
+                let patch = Patch::from(&*contact);
                 let forces = self.law.forces(&patch, &self.elasticity, &creepages, self.friction.at(slip));
                 on_wheel = on_wheel + contact_wrench(geometry, &motion.pose, contact, &forces);
                 let wear = wear_index(&creepages, &forces);
@@ -110,5 +115,19 @@ impl WheelRail<'_> {
             total = total + on_wheel;
         }
         (total, wheels)
+    }
+
+    /// What the damping makes of a normal force, of the rates of the pose alone (rolling has no part along the normal):
+    ///
+    /// ```text
+    /// N = C δ^1.5 (1 + χ δ'),   δ' = ((0, y', z') + (φ', 0, ψ') × r)·(0, -sin α, cos α)
+    /// ```
+    fn damped(&self, radius: f64, motion: &Motion, contact: &Contact) -> f32 {
+        let Motion { pose, rates, .. } = motion;
+        let arm = contact.position.cast::<f64>() - Vector3::new(0.0, pose.lateral, pose.vertical - radius);
+        let turn = Vector3::new(rates.roll, 0.0, rates.yaw);
+        let velocity = Vector3::new(0.0, rates.lateral, rates.vertical) + turn.cross(&arm);
+        let approach = -velocity.dot(&contact.normal().cast());
+        (1.0 + self.damping * approach).clamp(0.0, 2.0) as f32
     }
 }

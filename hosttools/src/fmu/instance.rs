@@ -300,11 +300,13 @@ impl Instance {
     /// Contact and creep by these parameters.
     fn contact(&self, parameters: &[f64]) -> Result<WheelRail<'_>> {
         let table = self.table.as_ref().ok_or("the table is not read yet")?.borrow_dependent();
+        let (friction, damping) = wheels::friction(parameters);
         Ok(WheelRail {
             source: Source::Table(table),
             law: wheels::law(self.now.integers[0]),
-            friction: wheels::friction(parameters),
+            friction,
             elasticity: Elasticity::from(&table.header().material),
+            damping,
         })
     }
 

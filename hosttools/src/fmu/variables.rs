@@ -74,8 +74,8 @@ pub const EXACT_TRACK: [&str; 2] = [
     "Take heading and cant slope of the track from the inputs; else they follow from curvature and cant",
 ];
 
-/// Parameters that both modes have, after their own: Polach's falling friction.
-pub(super) const FRICTION: usize = 3;
+/// Parameters that both modes have, after their own: Polach's falling friction and the contacts' damping.
+pub(super) const SHARED: usize = 4;
 
 /// A parameter.
 pub(super) fn parameter(name: &str, unit: &'static str, description: &str, start: f64, range: [f64; 2]) -> Real {
@@ -103,23 +103,16 @@ impl Variables {
             Mode::Wheelset => (wheelset::parameters(), wheelset::inputs(), wheelset::outputs()),
             Mode::Contact => (Vec::new(), contact::inputs(), contact::outputs()),
         };
-        reals.extend([
-            parameter("friction", "", "Coefficient of friction without slip", 0.3, [0.0, 2.0]),
-            parameter(
-                "friction_limit_ratio",
-                "",
-                "Polach's A: friction at infinite slip over that without",
-                1.0,
-                [0.0, 1.0],
-            ),
-            parameter(
-                "friction_decay",
-                "s/m",
-                "Polach's B: how fast friction falls with slip velocity",
-                0.0,
-                [0.0, 1e3],
-            ),
-        ]);
+        // A track that is rigid takes nothing from a wheel that bounces: damping stands for it.
+        let damping = if mode == Mode::Wheelset { 2.5 } else { 0.0 };
+        let shared = [
+            ("friction", "", "Coefficient of friction without slip", 0.3, 2.0),
+            ("friction_limit_ratio", "", "Polach's A: friction at infinite slip over that without", 1.0, 1.0),
+            ("friction_decay", "s/m", "Polach's B: how fast friction falls with slip velocity", 0.0, 1e3),
+            ("contact_damping", "s/m", "The normal force is raised by this share per m/s of approach", damping, 100.0),
+        ];
+        debug_assert_eq!(shared.len(), SHARED);
+        reals.extend(shared.map(|(name, unit, text, start, high)| parameter(name, unit, text, start, [0.0, high])));
         let (parameters, input_count) = (reals.len(), inputs.len());
         reals.extend(inputs.into_iter().chain(outputs).chain(wheels::outputs()));
         let law = Integer {

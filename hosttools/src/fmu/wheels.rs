@@ -3,7 +3,7 @@
 use flangeway::creep::Friction;
 use flangeway::{Side, Slot};
 
-use super::variables::{FRICTION, Real, output};
+use super::variables::{Real, SHARED, output};
 use crate::dynamics::wheel_rail::{Law, Wheel};
 
 /// Real outputs of a slot.
@@ -82,14 +82,11 @@ pub(super) fn integers(wheels: &[Wheel; 2]) -> [i32; 4] {
     [right[0], right[1], left[0], left[1]]
 }
 
-/// Friction from the last real parameters.
-pub(super) fn friction(parameters: &[f64]) -> Friction {
-    let mut friction = Friction::constant(0.0);
-    if let Some([coefficient, limit_ratio, decay]) = parameters.last_chunk::<FRICTION>() {
-        friction =
-            Friction { coefficient: *coefficient as f32, limit_ratio: *limit_ratio as f32, decay: *decay as f32 };
-    }
-    friction
+/// Friction and damping from the last real parameters.
+pub(super) fn friction(parameters: &[f64]) -> (Friction, f64) {
+    let [coefficient, limit_ratio, decay, damping] = *parameters.last_chunk::<SHARED>().unwrap_or(&[0.0; SHARED]);
+    let [coefficient, limit_ratio, decay] = [coefficient, limit_ratio, decay].map(|x| x as f32);
+    (Friction { coefficient, limit_ratio, decay }, damping)
 }
 
 /// A creep law by its number.

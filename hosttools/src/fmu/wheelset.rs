@@ -39,7 +39,7 @@ pub(super) fn parameters() -> Vec<Real> {
             "stiffness_x",
             "N/m",
             "Stiffness of each axle box along x; 0 leaves the suspension to the inputs",
-            5e6,
+            2e7,
             0.0,
             1e10,
         ),

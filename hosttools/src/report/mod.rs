@@ -2,12 +2,12 @@
 
 mod errors;
 mod heat;
-mod page;
+pub(crate) mod page;
 mod positions;
 mod profiles;
 pub mod rig;
 mod rolling;
-mod style;
+pub(crate) mod style;
 mod sweep;
 mod transfer;
 pub mod verify;

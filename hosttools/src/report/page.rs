@@ -41,10 +41,10 @@ pub(super) fn page(content: &Content<'_>, figures: &[Figure]) -> String {
 }
 
 /// The end of every page.
-pub(super) const END: &str = "</body>\n</html>\n";
+pub(crate) const END: &str = "</body>\n</html>\n";
 
 /// The beginning of a page: title (escaped already) and a sentence below it.
-pub(super) fn head(title: &str, words: &str) -> String {
+pub(crate) fn head(title: &str, words: &str) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width\">\n<title>{title}: Flangeway report</title>\n\
@@ -169,6 +169,6 @@ pub(super) fn title(header: &flangeway::SideHeader<'_>) -> String {
 }
 
 /// Text with the characters that mean something in HTML written out.
-pub(super) fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -11,33 +11,33 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use crate::error::{Error, Result};
 
 /// The library draws on whole pixels: drawn this many times larger and shown smaller, lines are smooth.
-pub(super) const FINENESS: u32 = 4;
+pub(crate) const FINENESS: u32 = 4;
 /// Width of every figure as it is shown (pixels).
-pub(super) const WIDTH: u32 = 1200;
+pub(crate) const WIDTH: u32 = 1200;
 
 /// Room around a panel's plot, in shown pixels.
-pub(super) const TITLE: u32 = 30;
-pub(super) const LEFT_LABELS: u32 = 66;
-pub(super) const BOTTOM_LABELS: u32 = 50;
-pub(super) const MARGIN: u32 = 14;
+pub(crate) const TITLE: u32 = 30;
+pub(crate) const LEFT_LABELS: u32 = 66;
+pub(crate) const BOTTOM_LABELS: u32 = 50;
+pub(crate) const MARGIN: u32 = 14;
 /// Height of a legend's row (shown pixels).
-pub(super) const LEGEND: u32 = 34;
+pub(crate) const LEGEND: u32 = 34;
 const FONT: &str = "sans-serif";
 const TITLE_FONT: u32 = 18;
 const AXIS_FONT: u32 = 15;
 const TICK_FONT: u32 = 14;
 
 /// Ink of totals, outlines and words.
-pub(super) const INK: RGBColor = RGBColor(34, 34, 34);
+pub(crate) const INK: RGBColor = RGBColor(34, 34, 34);
 /// A second ink, for what is only for comparison.
-pub(super) const GREY: RGBColor = RGBColor(120, 120, 120);
+pub(crate) const GREY: RGBColor = RGBColor(120, 120, 120);
 /// Filling of the wheel and of the rail.
-pub(super) const WHEEL: RGBColor = RGBColor(228, 233, 240);
-pub(super) const RAIL: RGBColor = RGBColor(226, 226, 222);
+pub(crate) const WHEEL: RGBColor = RGBColor(228, 233, 240);
+pub(crate) const RAIL: RGBColor = RGBColor(226, 226, 222);
 
 /// Colour of a slot, the same in every figure: P. Tol's high-contrast scheme, which keeps its three colours apart for
 /// colour-blind readers and in grey.
-pub(super) fn colour(slot: Slot) -> RGBColor {
+pub(crate) fn colour(slot: Slot) -> RGBColor {
     match slot {
         Slot::Tread => RGBColor(0, 68, 136),
         Slot::FlangeRoot => RGBColor(221, 170, 51),
@@ -46,7 +46,7 @@ pub(super) fn colour(slot: Slot) -> RGBColor {
 }
 
 /// The slot of a wheel-profile coordinate (m), by the boundaries of its wheel (m).
-pub(super) fn slot_at([upper, lower]: [f64; 2], s: f64) -> Slot {
+pub(crate) fn slot_at([upper, lower]: [f64; 2], s: f64) -> Slot {
     if s > upper {
         Slot::Tread
     } else if s > lower {
@@ -57,19 +57,19 @@ pub(super) fn slot_at([upper, lower]: [f64; 2], s: f64) -> Slot {
 }
 
 /// What the drawing library may fail with.
-pub(super) type Drawn<T> = std::result::Result<T, Box<dyn std::error::Error>>;
+pub(crate) type Drawn<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 /// An area to draw on, in drawn pixels.
-pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// A plot with two linear axes.
-pub(super) type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+pub(crate) type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// Shown pixels in drawn ones.
-pub(super) const fn px(shown: u32) -> u32 {
+pub(crate) const fn px(shown: u32) -> u32 {
     FINENESS * shown
 }
 
 /// Draws a figure of the usual width and a height in shown pixels, as SVG. `name` says what it shows.
-pub(super) fn figure(name: &str, height: u32, draw: impl FnOnce(&Area<'_>) -> Drawn<()>) -> Result<String> {
+pub(crate) fn figure(name: &str, height: u32, draw: impl FnOnce(&Area<'_>) -> Drawn<()>) -> Result<String> {
     let mut svg = String::new();
     {
         let area = SVGBackend::with_string(&mut svg, (px(WIDTH), px(height))).into_drawing_area();
@@ -83,38 +83,38 @@ pub(super) fn figure(name: &str, height: u32, draw: impl FnOnce(&Area<'_>) -> Dr
 }
 
 /// An axis: label with unit, range (of which the end may be the lesser), rough number of ticks.
-pub(super) struct Axis<'s> {
-    pub(super) label: &'s str,
-    pub(super) range: Range<f64>,
-    pub(super) ticks: usize,
-    pub(super) format: fn(&f64) -> String,
+pub(crate) struct Axis<'s> {
+    pub(crate) label: &'s str,
+    pub(crate) range: Range<f64>,
+    pub(crate) ticks: usize,
+    pub(crate) format: fn(&f64) -> String,
 }
 
 impl<'s> Axis<'s> {
     /// A linear axis.
-    pub(super) fn new(label: &'s str, range: Range<f64>, ticks: usize) -> Self {
+    pub(crate) fn new(label: &'s str, range: Range<f64>, ticks: usize) -> Self {
         Self { label, range, ticks, format: plain }
     }
 
     /// A logarithmic axis: the chart is given log10 of the values.
-    pub(super) fn log(label: &'s str, decades: Range<f64>) -> Self {
+    pub(crate) fn log(label: &'s str, decades: Range<f64>) -> Self {
         let ticks = (decades.end - decades.start).abs() as usize + 1;
         Self { label, range: decades, ticks, format: power }
     }
 }
 
 /// Height (shown pixels) of a panel whose plot is `plot` high.
-pub(super) const fn panel_height(plot: u32) -> u32 {
+pub(crate) const fn panel_height(plot: u32) -> u32 {
     TITLE + plot + BOTTOM_LABELS + MARGIN
 }
 
 /// Width (shown pixels) of the plot in a panel.
-pub(super) const fn plot_width(panel: u32) -> u32 {
+pub(crate) const fn plot_width(panel: u32) -> u32 {
     panel - LEFT_LABELS - 2 * MARGIN
 }
 
 /// A panel with a title and axes.
-pub(super) fn panel<'a, 'b>(area: &Area<'b>, title: &str, x: &Axis<'_>, y: &Axis<'_>) -> Drawn<Chart<'a, 'b>>
+pub(crate) fn panel<'a, 'b>(area: &Area<'b>, title: &str, x: &Axis<'_>, y: &Axis<'_>) -> Drawn<Chart<'a, 'b>>
 where
     'b: 'a,
 {
@@ -147,14 +147,14 @@ where
 }
 
 /// A line of words; `at` in drawn pixels, `size` in shown ones, in the middle of the line's height.
-pub(super) fn words(area: &Area<'_>, text: &str, at: [u32; 2], size: u32, anchor: HPos, colour: RGBColor) -> Drawn<()> {
+pub(crate) fn words(area: &Area<'_>, text: &str, at: [u32; 2], size: u32, anchor: HPos, colour: RGBColor) -> Drawn<()> {
     let style = (FONT, px(size)).into_text_style(area).color(&colour).pos(Pos::new(anchor, VPos::Center));
     area.draw_text(text, &style, (at[0] as i32, at[1] as i32))?;
     Ok(())
 }
 
 /// Style of a small label inside a plot, centred on its point.
-pub(super) fn label_style<'a>(colour: RGBColor) -> TextStyle<'a> {
+pub(crate) fn label_style<'a>(colour: RGBColor) -> TextStyle<'a> {
     TextStyle {
         font: (FONT, px(13)).into_font(),
         color: colour.to_backend_color(),
@@ -164,7 +164,7 @@ pub(super) fn label_style<'a>(colour: RGBColor) -> TextStyle<'a> {
 
 /// How an entry of a legend is marked.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Mark {
+pub(crate) enum Mark {
     Line,
     Dashes,
     Dot,
@@ -172,12 +172,12 @@ pub(super) enum Mark {
 }
 
 /// Entries for the three slots.
-pub(super) fn slot_entries(mark: Mark) -> Vec<(Mark, RGBColor, String)> {
+pub(crate) fn slot_entries(mark: Mark) -> Vec<(Mark, RGBColor, String)> {
     Slot::ALL.into_iter().map(|slot| (mark, colour(slot), slot.to_string())).collect()
 }
 
 /// A row of entries at the top of an area, above everything else.
-pub(super) fn legend(area: &Area<'_>, entries: &[(Mark, RGBColor, String)]) -> Drawn<()> {
+pub(crate) fn legend(area: &Area<'_>, entries: &[(Mark, RGBColor, String)]) -> Drawn<()> {
     let (mut x, y) = (px(LEFT_LABELS + MARGIN) as i32, px(LEGEND) as i32 / 2);
     let sample = px(34) as i32;
     for (mark, colour, text) in entries {
@@ -204,7 +204,7 @@ pub(super) fn legend(area: &Area<'_>, entries: &[(Mark, RGBColor, String)]) -> D
 }
 
 /// Runs of a curve that lie in the same slot, each to be drawn in one colour.
-pub(super) fn runs(points: impl IntoIterator<Item = (Slot, (f64, f64))>) -> Vec<(Slot, Vec<(f64, f64)>)> {
+pub(crate) fn runs(points: impl IntoIterator<Item = (Slot, (f64, f64))>) -> Vec<(Slot, Vec<(f64, f64)>)> {
     let mut runs: Vec<(Slot, Vec<(f64, f64)>)> = Vec::new();
     for (slot, point) in points {
         match runs.last_mut() {
@@ -216,19 +216,19 @@ pub(super) fn runs(points: impl IntoIterator<Item = (Slot, (f64, f64))>) -> Vec<
 }
 
 /// Draws a full line.
-pub(super) fn line(chart: &mut Chart<'_, '_>, points: Vec<(f64, f64)>, ink: RGBColor) -> Drawn<()> {
+pub(crate) fn line(chart: &mut Chart<'_, '_>, points: Vec<(f64, f64)>, ink: RGBColor) -> Drawn<()> {
     chart.draw_series(LineSeries::new(points, ink.stroke_width(px(3))))?;
     Ok(())
 }
 
 /// Draws a dashed line.
-pub(super) fn dashes(chart: &mut Chart<'_, '_>, points: Vec<(f64, f64)>, ink: RGBColor) -> Drawn<()> {
+pub(crate) fn dashes(chart: &mut Chart<'_, '_>, points: Vec<(f64, f64)>, ink: RGBColor) -> Drawn<()> {
     chart.draw_series(DashedLineSeries::new(points, px(7), px(4), ink.stroke_width(px(2))))?;
     Ok(())
 }
 
 /// A number without trailing zeros and without a negative zero.
-pub(super) fn plain(x: &f64) -> String {
+pub(crate) fn plain(x: &f64) -> String {
     let text = format!("{:.3}", x + 0.0);
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".into() } else { text.into() }
@@ -241,7 +241,7 @@ fn power(exponent: &f64) -> String {
 }
 
 /// The least range around the values, with a share of air, of which both ends are multiples of `step`.
-pub(super) fn around(values: impl Iterator<Item = f64>, share: f64, step: f64) -> Range<f64> {
+pub(crate) fn around(values: impl Iterator<Item = f64>, share: f64, step: f64) -> Range<f64> {
     let (low, high) = values.fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)));
     let air = share * (high - low);
     ((low - air) / step).floor() * step..((high + air) / step).ceil() * step

@@ -1,6 +1,6 @@
 //! Kalker's creep coefficients.
 
-use crate::creep::{greater, lesser};
+use crate::math::{greater, lesser};
 
 /// Kalker's creep coefficients C_ij of an elliptic contact.
 ///
@@ -23,6 +23,7 @@ pub struct Coefficients {
 const ROWS: usize = 19;
 
 /// C11, C22, C23, each at ν = 0, 0.25 and 0.5.
+#[expect(clippy::approx_constant, reason = "3.14 as printed is no π")]
 const TABLE: [[[f32; 3]; 3]; ROWS] = [
     [[2.51, 3.31, 4.85], [2.51, 2.52, 2.53], [0.334, 0.473, 0.731]],
     [[2.59, 3.37, 4.81], [2.59, 2.63, 2.66], [0.483, 0.603, 0.809]],
@@ -81,6 +82,7 @@ mod tests {
     use super::*;
 
     /// a/b of a row.
+    #[expect(clippy::cast_precision_loss, reason = "0 to 18")]
     fn ratio(row: usize) -> f32 {
         let step = 0.1 * (row as f32 + 1.0);
         if row < 10 { step } else { 1.0 / (2.0 - step) }
@@ -118,12 +120,12 @@ mod tests {
         let mut worst = [[0.0_f32; 3]; 2];
         for row in 1..ROWS - 1 {
             // Rows from a/b = 0.2 to 5 with both their neighbours, and the rest.
-            let rest = usize::from(row < 2 || row > ROWS - 3);
+            let rest = usize::from(!(2..=ROWS - 3).contains(&row));
             for (kind, worst) in worst[rest].iter_mut().enumerate() {
-                for column in 0..3 {
-                    let at = |row: usize| 1.0 / TABLE[row][kind][column];
-                    let met = 1.0 / (0.5 * (at(row - 1) + at(row + 1)));
-                    *worst = worst.max((met * at(row) - 1.0).abs());
+                let [before, left_out, after] = [row - 1, row, row + 1].map(|row| TABLE[row][kind]);
+                for ((before, left_out), after) in before.into_iter().zip(left_out).zip(after) {
+                    let met = 2.0 / (1.0 / before + 1.0 / after);
+                    *worst = worst.max((met / left_out - 1.0).abs());
                 }
             }
         }

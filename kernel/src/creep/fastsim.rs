@@ -2,8 +2,8 @@
 
 use core::f32::consts::{FRAC_PI_2, PI};
 
-use crate::creep::{Case, CreepForces, Creepages, Elasticity, Patch, greater, lesser};
-use crate::math::Four;
+use crate::creep::{Case, CreepForces, Creepages, Elasticity, Patch};
+use crate::math::{Four, greater, lesser};
 
 /// Largest traction of adhesion over the patch's largest bound that is computed; everything slides long before.
 const TRACTION_LIMIT: f32 = 1e12;
@@ -49,9 +49,12 @@ pub fn fastsim<const NX: usize, const NY: usize>(
     creepages: &Creepages,
     friction: f32,
 ) -> CreepForces {
+    if NX == 0 || NY == 0 {
+        return CreepForces::NONE;
+    }
     let case = Case::new(patch, elasticity, creepages, friction);
     let sums = Tractions::new(&case, Grid::new(NX, NY)).sums(NX);
-    sums.within(case.bound).only_if(case.valid & (NX > 0) & (NY > 0))
+    sums.within(case.bound).only_if(case.valid)
 }
 
 /// The grid's own numbers, in the unit square.

@@ -1,7 +1,6 @@
 //! The coefficient of friction, constant or falling with the speed of slip.
 
-use crate::creep::{greater, lesser};
-use crate::math::exp_negative;
+use crate::math::{exp_negative, greater, lesser};
 
 /// A coefficient of friction that may fall with the slip: μ(w) = μ0 ((1 - A) e^(-B w) + A).
 ///

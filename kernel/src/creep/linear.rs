@@ -1,6 +1,7 @@
 //! Kalker's linear theory, and its saturation by Shen, Hedrick and Elkins.
 
-use crate::creep::{Case, CreepForces, Creepages, Elasticity, Patch, greater, lesser};
+use crate::creep::{Case, CreepForces, Creepages, Elasticity, Patch};
+use crate::math::{greater, lesser};
 
 /// Kalker's linear theory: no saturation, for creepages much smaller than those of sliding.
 ///

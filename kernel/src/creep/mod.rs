@@ -4,10 +4,10 @@
 //!
 //! | law | what it is | instructions |
 //! | --- | --- | --- |
-//! | [`kalker_linear`] | Kalker's linear theory, no saturation | fewest |
-//! | [`shen_hedrick_elkins`] | the linear resultant bent by a cubic to the bound μN | few |
-//! | [`polach`] | closed form, spin included | few |
-//! | [`fastsim`] | Kalker's simplified theory on a grid of NX by NY elements | some 40 for each four elements |
+//! | [`kalker_linear`] | Kalker's linear theory, no saturation | 230 |
+//! | [`shen_hedrick_elkins`] | the linear resultant bent by a cubic to the bound μN | 276 |
+//! | [`polach`] | closed form, spin included | 495 |
+//! | [`fastsim`] | Kalker's simplified theory on a grid of NX by NY elements | 1,668 on 10 by 10, 6,880 on 20 by 20 |
 //!
 //! **Signs.** Creepages are the velocity of the wheel's material relative to the rail's, divided by the speed; forces
 //! act on the **wheel**, so they oppose the creepages. The axes of the contact plane are x forward, y along the contact's
@@ -16,6 +16,15 @@
 //! turned, and the same law.
 //!
 //! Rolling is towards +x; a vehicle that runs backwards is described in a track frame turned round.
+//!
+//! ```
+//! use flangeway::creep::{Creepages, Elasticity, Patch, fastsim, power};
+//!
+//! let patch = Patch { semi_axes: [6e-3, 4e-3], normal_force: 60e3 };
+//! let creepages = Creepages { longitudinal: 1e-3, lateral: -5e-4, spin: 0.1 };
+//! let forces = fastsim::<10, 10>(&patch, &Elasticity::STEEL, &creepages, 0.3);
+//! assert!(forces.longitudinal < 0.0 && power(20.0, &creepages, &forces) < 0.0);
+//! ```
 //!
 //! **Inputs that are no numbers**, negative forces, semi-axes or friction give zero forces, never NaN. Creepages beyond
 //! [`CREEPAGE_LIMIT`] are clamped there: everything has long slid.
@@ -34,7 +43,7 @@ pub use polach::polach;
 
 use crate::contact::Contact;
 use crate::header::Material;
-use crate::math::{single, sqrt};
+use crate::math::{Mask, Two, greater, lesser, single, sqrt};
 
 /// Largest creepage that is computed; spin times the patch's mean semi-axis is held by the same.
 pub const CREEPAGE_LIMIT: f32 = 10.0;
@@ -83,13 +92,13 @@ impl CreepForces {
         }
     }
 
-    /// These forces, or none.
+    /// These forces, or none. By masks, so that no branch is made of it.
     #[inline(always)]
-    fn only_if(self, valid: bool) -> Self {
-        // Bits, so that no branch is made of it and a NaN is not multiplied.
-        let mask = u32::from(valid).wrapping_neg();
-        let kept = |x: f32| f32::from_bits(x.to_bits() & mask);
-        Self { longitudinal: kept(self.longitudinal), lateral: kept(self.lateral), spin_moment: kept(self.spin_moment) }
+    fn only_if(self, valid: Mask) -> Self {
+        let pair = |x: f32, y: f32| Two::new([f64::from(x), f64::from(y)]).where_all(valid).single();
+        let ([longitudinal, lateral], [spin_moment, _]) =
+            (pair(self.longitudinal, self.lateral), pair(self.spin_moment, 0.0));
+        Self { longitudinal, lateral, spin_moment }
     }
 
     /// The force no longer than the bound, the moment shortened with it.
@@ -171,32 +180,26 @@ struct Case {
     bound: f32,
     creepages: Creepages,
     coefficients: Coefficients,
-    valid: bool,
+    valid: Mask,
 }
 
 impl Case {
     #[inline(always)]
     fn new(patch: &Patch, elasticity: &Elasticity, creepages: &Creepages, friction: f32) -> Self {
-        let [a, b] = patch.semi_axes;
-        let bound = friction * patch.normal_force;
-        let g = elasticity.shear_modulus;
+        let Patch { semi_axes: [a, b], normal_force } = *patch;
+        let Elasticity { shear_modulus, poisson_ratio } = *elasticity;
         let Creepages { longitudinal: xi, lateral: eta, spin: phi } = *creepages;
-        let inside = |x: f32, low: f32, high: f32| (x >= low) & (x <= high);
-        let positive = |x: f32| inside(x, f32::MIN_POSITIVE, f32::MAX);
-        let valid = inside(a, 1e-9, 1e3)
-            & inside(b, 1e-9, 1e3)
-            & positive(friction)
-            & positive(patch.normal_force)
-            & inside(bound, 1e-9, 1e12)
-            & inside(g, 1.0, 1e15)
-            & inside(elasticity.poisson_ratio, 0.0, 0.5)
-            & xi.is_finite()
-            & eta.is_finite()
-            & phi.is_finite();
-        let or_one = |x: f32| if valid { x } else { 1.0 };
-        let (a, b, bound, g) = (or_one(a), or_one(b), or_one(bound), or_one(g));
+        let (whole, axes) = (Range::new(f32::MIN_POSITIVE, f32::MAX), Range::new(1e-9, 1e3));
+        let product = friction * normal_force;
+        let (bounds, shears, ratios) = (Range::new(1e-9, 1e12), Range::new(1.0, 1e15), Range::new(0.0, 0.5));
+        let valid = Range::hold([axes, axes], [a, b])
+            .and(Range::hold([bounds, shears], [product, shear_modulus]))
+            .and(Range::hold([ratios, whole], [poisson_ratio, normal_force]))
+            .and(finite(xi, eta))
+            .and(finite(phi, friction));
+        let (a, b, bound, g) = (axes.of(a), axes.of(b), bounds.of(product), shears.of(shear_modulus));
         let mean = sqrt(a * b);
-        let held = |x: f32, limit: f32| lesser(greater(or_one(x), -limit), limit);
+        let limit = Range::new(-CREEPAGE_LIMIT, CREEPAGE_LIMIT);
         Self {
             a,
             b,
@@ -204,24 +207,45 @@ impl Case {
             unit: g * (a * b),
             bound,
             creepages: Creepages {
-                longitudinal: held(xi, CREEPAGE_LIMIT),
-                lateral: held(eta, CREEPAGE_LIMIT),
-                spin: held(phi, CREEPAGE_LIMIT / mean),
+                longitudinal: limit.of(xi),
+                lateral: limit.of(eta),
+                spin: limit.of(phi * mean) / mean,
             },
-            coefficients: Coefficients::of(a / b, if valid { elasticity.poisson_ratio } else { 0.25 }),
+            coefficients: Coefficients::of(a / b, ratios.of(poisson_ratio)),
             valid,
         }
     }
 }
 
-/// The greater of two numbers, the second if one of them is NaN.
-#[inline(always)]
-fn greater(x: f32, y: f32) -> f32 {
-    if x > y { x } else { y }
+/// Numbers that are taken.
+#[derive(Clone, Copy)]
+struct Range {
+    low: f32,
+    high: f32,
 }
 
-/// The lesser of two numbers, the second if one of them is NaN.
+impl Range {
+    #[inline(always)]
+    const fn new(low: f32, high: f32) -> Self {
+        Self { low, high }
+    }
+
+    /// The nearest number of the range; an end for NaN.
+    #[inline(always)]
+    fn of(self, x: f32) -> f32 {
+        lesser(greater(x, self.low), self.high)
+    }
+
+    /// Whether two numbers lie in their ranges: nothing is left when what is taken for them is subtracted.
+    #[inline(always)]
+    fn hold([first, second]: [Self; 2], [x, y]: [f32; 2]) -> Mask {
+        let taken = Two::new([f64::from(first.of(x)), f64::from(second.of(y))]);
+        (Two::new([f64::from(x), f64::from(y)]) - taken).abs().within(Two::all(0.0))
+    }
+}
+
+/// Whether two numbers are finite.
 #[inline(always)]
-fn lesser(x: f32, y: f32) -> f32 {
-    if x < y { x } else { y }
+fn finite(x: f32, y: f32) -> Mask {
+    Two::new([f64::from(x), f64::from(y)]).abs().within(Two::all(f64::from(f32::MAX)))
 }

@@ -3,8 +3,8 @@
 use core::f32::consts::{FRAC_2_PI, PI};
 
 use crate::creep::linear::cubic;
-use crate::creep::{Case, CreepForces, Creepages, Elasticity, Patch, greater, lesser};
-use crate::math::{arctangent, exp_negative, sqrt};
+use crate::creep::{Case, CreepForces, Creepages, Elasticity, Patch};
+use crate::math::{arctangent, exp_negative, greater, lesser, sqrt};
 
 /// Polach's closed form for creep forces with spin.
 ///
@@ -24,8 +24,9 @@ use crate::math::{arctangent, exp_negative, sqrt};
 /// ```
 ///
 /// The published formulas have no moment, and with spin against the lateral creepage F_s alone would feed power in. As
-/// in the linear theory the moment takes it back, and adds the spin's own M' = G (a b)² C33 φ, shortened like F or, where that is less, by
-/// Shen, Hedrick and Elkins' cubic to 3π/16 μ N sqrt(a b), the moment of a round patch that spins in place:
+/// in the linear theory the moment takes it back, and adds the spin's own M' = G (a b)² C33 φ, shortened like F or, where
+/// that is less, by Shen, Hedrick and Elkins' cubic to 3π/16 μ N sqrt(a b), the moment of a round patch that spins in
+/// place:
 ///
 /// ```text
 /// Mz  = F_s η / s' - min(F / F_linear, cubic) M'
@@ -37,9 +38,8 @@ pub fn polach(patch: &Patch, elasticity: &Elasticity, creepages: &Creepages, fri
     let case = Case::new(patch, elasticity, creepages, friction);
     let Case { a, b, mean, unit, bound, coefficients: c, .. } = case;
     let Creepages { longitudinal: xi, lateral: eta, spin: phi } = case.creepages;
-    // η', s, s'; creepages below 1e-12 are none.
-    let with_spin = eta + phi * a;
-    let lateral = if with_spin.abs() > eta.abs() { with_spin } else { eta };
+    // |η'|, s, s'; creepages below 1e-12 are none.
+    let lateral = greater((eta + phi * a).abs(), eta.abs());
     let s = greater(sqrt(xi * xi + eta * eta), 1e-12);
     let whole = greater(sqrt(xi * xi + lateral * lateral), 1e-12);
     // C = sqrt((C11 ξ / s)² + (C22 η / s)²)
@@ -47,15 +47,16 @@ pub fn polach(patch: &Patch, elasticity: &Elasticity, creepages: &Creepages, fri
     let stiffness = sqrt(c_x * c_x + c_y * c_y);
     // ε = G π a b C s' / (4 μ N)
     let epsilon = lesser(unit * PI * 0.25 * (stiffness * whole) / bound, 1e8);
-    // F = (2 μ N / π) (ε / (1 + ε²) + atan ε)
-    let force = FRAC_2_PI * bound * (epsilon / (1.0 + epsilon * epsilon) + arctangent(epsilon));
+    // F = (2 μ N / π) (ε / (1 + ε²) + atan ε), as its linear part (4/π) μ N ε and what is left of that
+    let e = greater(epsilon, 1e-6);
+    let saturation = 0.5 * (1.0 / (1.0 + e * e) + arctangent(e) / e);
+    let force = 2.0 * FRAC_2_PI * bound * (epsilon * saturation);
     // k = 1 + 6.3 (1 - e^(-a/b))
     let k = 1.0 + 6.3 * (1.0 - exp_negative(lesser(a / b, 80.0)));
     // F_s / (9/16 a μ N k)
-    let spin_force = 9.0 / 16.0 * a * bound * k * spin_saturation(unit, mean / a, c.c23 * lateral.abs(), k * bound);
+    let spin_force = 9.0 / 16.0 * a * bound * k * spin_saturation(unit, mean / a, c.c23 * lateral, k * bound);
     let (along, across) = (force / whole, spin_force / whole);
-    // F / F_linear = F / (4/π μ N ε), and M' / (3π/16 μ N sqrt(a b)) bent as Shen, Hedrick and Elkins bend.
-    let saturation = if epsilon > 1e-6 { force / (2.0 * FRAC_2_PI * bound * epsilon) } else { 1.0 };
+    // M' over 3π/16 μ N sqrt(a b), bent as Shen, Hedrick and Elkins bend.
     let moment = unit * (mean * mean) * case.c33() * phi;
     let bent = cubic(moment.abs() / (3.0 * PI / 16.0 * bound * mean));
     CreepForces {
