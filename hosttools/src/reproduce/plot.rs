@@ -5,9 +5,7 @@ use std::ops::Range;
 use plotters::prelude::*;
 
 use crate::error::{Error, Result};
-use crate::report::style::{
-    Axis, GREY, LEGEND, Mark, dashes, figure, legend, line, panel, panel_height, px,
-};
+use crate::report::style::{Axis, GREY, LEGEND, Mark, dashes, figure, legend, line, panel, panel_height, px};
 
 /// Height of a plot (shown pixels).
 const PLOT: u32 = 320;
