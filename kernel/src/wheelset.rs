@@ -46,7 +46,7 @@ pub struct Motion {
 /// Creepages of a contact: velocity of the wheel's material relative to the rail's at the contact point, in the
 /// contact's axes, divided by the speed.
 ///
-/// Kalker (1990), 1.3; in components Iwnicki (ed.), Handbook of Railway Vehicle Dynamics (2006), chapter 4. The track
+/// Kalker (1990); in components Iwnicki (ed.), Handbook of Railway Vehicle Dynamics (2006). The track
 /// frame moves with V and turns with V κ about z, so in it the rail runs backwards. With the axle's direction e, the
 /// point p of the contact and r from the wheelset's centre to it:
 ///

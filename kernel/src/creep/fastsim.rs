@@ -12,7 +12,7 @@ const TRACTION_LIMIT: f32 = 1e12;
 /// force.
 ///
 /// J. J. Kalker, A fast algorithm for the simplified theory of rolling contact, Vehicle System Dynamics 11 (1982);
-/// Kalker (1990), 3.7. Displacements are proportional to the tractions of their own point, with flexibilities that make
+/// Kalker (1990). Displacements are proportional to the tractions of their own point, with flexibilities that make
 /// the sums without slip those of the linear theory:
 ///
 /// ```text

@@ -4,7 +4,7 @@ use crate::math::{exp_negative, greater, lesser};
 
 /// A coefficient of friction that may fall with the slip: μ(w) = μ0 ((1 - A) e^(-B w) + A).
 ///
-/// O. Polach, Creep forces in simulations of traction vehicles running on adhesion limit, Wear 258 (2005), equation 13.
+/// O. Polach, Creep forces in simulations of traction vehicles running on adhesion limit, Wear 258 (2005).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Friction {

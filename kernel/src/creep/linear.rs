@@ -5,7 +5,7 @@ use crate::math::{greater, lesser};
 
 /// Kalker's linear theory: no saturation, for creepages much smaller than those of sliding.
 ///
-/// Kalker (1990), equations 2.80 and E3, for forces on the wheel:
+/// Kalker, Three-Dimensional Elastic Bodies in Rolling Contact (1990), for forces on the wheel:
 ///
 /// ```text
 /// Fx = -G a b C11 ξ
