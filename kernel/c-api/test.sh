@@ -35,6 +35,7 @@ step "library: format, lints, no std below it, the version of the other crates"
 cargo fmt --all --check -- --config-path ../../rustfmt.toml
 cargo clippy --workspace --all-targets --locked --release -- -D warnings
 cargo clippy --lib --features cost --locked --release -- -D warnings
+RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --locked --quiet
 if cargo tree -e normal,features --locked | grep -E 'feature "(std|alloc|use-std)"'; then
   echo "a dependency asks for std or alloc" >&2
   exit 1

@@ -6,7 +6,6 @@
 //! should cause, becomes `fmi2Fatal` and stays inside. All functions are those of the standard's header fmi2Functions.h;
 //! its section numbers stand beside them.
 #![expect(unsafe_code, reason = "FMI is an interface of C")]
-#![expect(clippy::missing_safety_doc, reason = "the standard says what the pointers are")]
 
 mod common;
 mod logging;

@@ -6,21 +6,19 @@ use core::hint::black_box;
 
 use flangeway::{ContactTable, Contacts, Pose, Side};
 
-/// Looks `count` poses up, as `tests/cost.c` does through the C interface; the sum of the strongest forces.
-///
-/// # Safety
-/// The image must be a table's `length` bytes, and `poses` `count` poses.
+use crate::table::{Table, view};
+
+/// Looks `count` poses up, as `tests/cost.c` does through the C interface; the sum of the first contacts' forces.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn cost_rust(image: *const u8, length: usize, poses: *const [f64; 4], count: usize) -> f64 {
-    // SAFETY: as above.
-    let image = unsafe { core::slice::from_raw_parts(image, length) };
-    // SAFETY: as above.
+pub unsafe extern "C" fn cost_rust(table: *const Table, poses: *const [f64; 4], count: usize) -> f64 {
+    // SAFETY: a loaded table.
+    let Ok(table) = (unsafe { view(table) }) else { return f64::NAN };
+    // SAFETY: as many poses.
     let poses = unsafe { core::slice::from_raw_parts(poses, count) };
-    let Ok(table) = ContactTable::new(image) else { return f64::NAN };
-    cost_rust_loop(&table, poses)
+    cost_rust_loop(table, poses)
 }
 
-/// The loop, which [`cost_rust`] wraps in the table's check: its instructions are counted by this name.
+/// The loop: its instructions are counted by this name.
 #[inline(never)]
 #[unsafe(no_mangle)]
 fn cost_rust_loop(table: &ContactTable<'_>, poses: &[[f64; 4]]) -> f64 {
