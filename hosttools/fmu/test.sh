@@ -25,6 +25,7 @@ fi
 step "program and library"
 cargo build --release --locked -p flangeway-host --bin flangeway
 cargo build --release --locked -p flangeway-fmu --lib --example curve
+cargo build --release --locked --manifest-path kernel/c-api/Cargo.toml --target-dir kernel/c-api/target
 flangeway=$target/release/flangeway
 wanted=34
 found=$(nm -D --defined-only "$target/release/libflangeway_fmu.so" | grep -c ' T fmi2')
@@ -51,7 +52,8 @@ flangeway=$work/alone/flangeway refuse "cargo build --release -p flangeway-fmu" 
 [ ! -e "$work/x.fmu" ]
 
 step "FMPy"
-"$tools/bin/python3" hosttools/fmu/tests/importer.py "$flangeway" "$target/release/examples/curve" $scenario $table "$work"
+"$tools/bin/python3" hosttools/fmu/tests/importer.py "$flangeway" "$target/release/examples/curve" $scenario $table \
+  "$PWD/kernel/c-api/target/release/libflangeway_c.so" "$work"
 
 step "libcosim"
 if "$tools/bin/python3" -c 'import libcosimpy' 2>/dev/null || "$tools/bin/pip" install --quiet libcosimpy==0.0.6; then

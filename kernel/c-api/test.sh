@@ -75,6 +75,17 @@ if nm "$work/errors" | grep -E ' [A-Za-z] .*(__rust_alloc|__rg_alloc)'; then
   exit 1
 fi
 
+step "surroundings: memory functions and nothing else"
+roots=$(nm -D --defined-only "$shared" | awk '$3 ~ /^flangeway_/ { printf "-Wl,-u,%s ", $3 }')
+# shellcheck disable=SC2086
+gcc -nostdlib -nostartfiles -static -Wl,--gc-sections -Wl,-e,flangeway_contacts $roots $static -o "$work/bare" \
+  2>"$work/log" || true
+wants=$(grep -o 'undefined reference to .*' "$work/log" | tr -d "\`'" | awk '{ print $4 }' | sort -u | xargs)
+echo "the library wants: $wants"
+for name in $wants; do
+  case $name in memcpy | memset | memmove | memcmp | bcmp) ;; *) echo "$name is not a memory function" >&2; exit 1 ;; esac
+done
+
 step "bits: C against Rust, plain, from the shared library, sanitised"
 for name in s1002_60e1_40 urban_metre_gauge; do
   file=../../tables/$name.fwt

@@ -1,6 +1,7 @@
-"""The units under FMPy: `python3 importer.py FLANGEWAY CURVE SCENARIO TABLE FOLDER` (see test.sh).
+"""The units under FMPy: `python3 importer.py FLANGEWAY CURVE SCENARIO TABLE LIBRARY FOLDER` (see test.sh).
 
-FLANGEWAY is the program, CURVE the example that runs the scenario as `flangeway simulate` does and writes bits.
+FLANGEWAY is the program, CURVE the example that runs the scenario as `flangeway simulate` does and writes bits, LIBRARY
+the C interface's shared library.
 """
 
 import csv
@@ -19,7 +20,7 @@ from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi2 import fmi2CallbackAllocateMemoryTYPE, fmi2CallbackFreeMemoryTYPE
 from fmpy.validation import validate_fmu
 
-program, curve, scenario, table, folder = sys.argv[1:]
+program, curve, scenario, table, library, folder = sys.argv[1:]
 folder = pathlib.Path(folder)
 SETTINGS = tomllib.loads(pathlib.Path(scenario).read_text())
 INPUTS, POSE, WHEEL = 24, 5, 6
@@ -346,6 +347,67 @@ def contact_only(fmu):
     print("contact only: forces in balance, mirror images, flags")
 
 
+def as_the_c_interface(fmu, library):
+    """The wrench of the contact unit has the bits of `flangeway_wheelset`."""
+    c = ctypes.CDLL(library)
+    image, view = np.fromfile(table, dtype="u1"), np.zeros(4096, dtype="u1")
+    pointer = lambda array: ctypes.c_void_p(array.ctypes.data)
+    sizes = [ctypes.c_size_t(array.nbytes) for array in (view, image)]
+    assert c.flangeway_table_load(pointer(view), sizes[0], pointer(image), sizes[1]) == 0
+    friction, found = np.array([0.3, 1.0, 0.0], dtype="f4"), np.zeros(4096, dtype="f8")
+    unit = Unit(fmu).start(friction=0.3)
+    inputs = unit.references(v.name for v in unit.description.modelVariables if v.causality == "input")
+    outputs = unit.references(["force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z"])
+    random = np.random.default_rng(1)
+    loaded = 0
+    for _ in range(500):
+        motion = random.uniform(-1, 1, 11) * [5e-3, 5e-3, 3e-4, 1e-3, 0.02, 0.05, 0.01, 0.02, 0, 0.1, 1e-3]
+        motion += [0, 0, 3e-4, 0, 0, 0, 0, 0, 20.0, 20.0 / 0.46, 0]
+        assert c.flangeway_wheelset(pointer(view), pointer(motion), 2, pointer(friction), pointer(found)) == 0
+        unit.slave.setReal(inputs, motion.tolist())
+        wrench = np.array(unit.slave.getReal(outputs))
+        assert wrench.tobytes() == found[:6].tobytes(), (motion, wrench, found[:6])
+        loaded += wrench[2] < 0.0
+    unit.close()
+    assert loaded > 250
+    print(f"contact only: 500 motions, {loaded} with force, the bits of the C interface")
+
+
+def stability(fmu):
+    """The limit that the contact unit's description states, by a mass that bounces on it with a step's delay."""
+    unit = Unit(fmu).start()
+    unit.set(speed=20.0, spin=20.0 / 0.46)
+
+    def force(z):
+        unit.set(vertical=z)
+        return unit.get(["force_z"])[0]
+
+    mass, damping, rest = 1200.0, 1e5, 4e-4
+    weight = -force(rest)
+    stiffness = (force(rest - 1e-6) - force(rest + 1e-6)) / 2e-6
+    limit = 2.0 * damping / (3.0 * stiffness)
+
+    def growth(h):
+        """Largest speed in the last tenth of 0.1 s over that in the first."""
+        z, v, late = rest, 1e-4, force(rest)
+        speeds, decay = [], np.exp(-damping / mass * h)
+        for _ in range(int(0.1 / h)):
+            now = force(z)
+            # m v' = F + W - d v with F a step late and held: exact over the step.
+            end = (late + weight) / damping
+            z, v = z + end * h + (v - end) * (1.0 - decay) * mass / damping, end + (v - end) * decay
+            late = now
+            speeds.append(abs(v))
+        tenth = len(speeds) // 10
+        return max(speeds[-tenth:]) / max(speeds[:tenth])
+
+    below, above = growth(0.7 * limit), growth(1.4 * limit)
+    unit.close()
+    assert below < 0.5 and above > 2.0, (limit, below, above)
+    print(f"contact only, a step's delay, k = {stiffness:.2g} N/m: limit {1e6 * limit:.0f} us; in 0.1 s the motion is "
+          f"{below:.2g} times itself at 0.7 of it, {above:.2g} times at 1.4")
+
+
 def cost(fmu):
     """Processor time of 20 s in the curve, exchanged at 1 ms, 0.1 ms inside, Polach."""
     unit = Unit(fmu).start(creep_law=2, step=1e-4)
@@ -377,4 +439,6 @@ several(wheelset)
 rollback(wheelset)
 errors(wheelset)
 contact_only(contact)
+as_the_c_interface(contact, library)
+stability(contact)
 cost(wheelset)
