@@ -3,13 +3,16 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use crate::dynamics::record::write_csv;
+use flangeway::{Flags, Side};
+
+use crate::dynamics::record::{Sample, write_csv};
 use crate::dynamics::run::{Ground, rows, run as simulate};
 use crate::dynamics::scenario::{Method, Scenario};
-use crate::dynamics::wheel_rail::Law;
+use crate::dynamics::wheel_rail::{Law, Wheel};
 use crate::error::Result;
-use crate::image::folder_of;
+use crate::image::{folder_of, write_atomically};
 use crate::progress;
+use crate::report::vehicle::picture;
 
 /// Arguments of `flangeway simulate`.
 #[derive(Debug, Clone, clap::Args)]
@@ -25,6 +28,9 @@ pub struct SimulateArgs {
     /// Creep law, instead of the scenario's
     #[arg(long)]
     pub creep: Option<Law>,
+    /// Draw displacements, forces by slot, Y/Q and wear
+    #[arg(long, value_name = "OUT.svg")]
+    pub svg: Option<PathBuf>,
 }
 
 /// Runs the scenario and writes what happened.
@@ -44,6 +50,35 @@ pub fn run(args: &SimulateArgs) -> Result<()> {
     let seconds = start.elapsed().as_secs_f64();
     write_csv(&args.output, &samples)?;
     let simulated = samples.last().map_or(0.0, |sample| sample.time);
-    eprintln!("{}: {} rows, {simulated:.2} s in {seconds:.2} s", args.output.display(), samples.len());
+    let step = 1e3 * scenario.run.step_s;
+    eprintln!("{}: {}", args.scenario.display(), scenario.title);
+    eprintln!("  {simulated:.2} s in steps of {step} ms, {seconds:.2} s of computing, {} rows", samples.len());
+    summary(&samples);
+    eprintln!("  {}", args.output.display());
+    if let Some(path) = &args.svg {
+        write_atomically(path, picture(&scenario.title, &samples)?.as_bytes())?;
+        eprintln!("  {}", path.display());
+    }
     Ok(())
+}
+
+/// What each wheel went through, a line a wheel.
+fn summary(samples: &[Sample]) {
+    let wheelsets = samples.first().map_or(0, |sample| sample.wheelsets.len());
+    for index in 0..wheelsets {
+        for (place, side) in Side::ALL.into_iter().enumerate() {
+            let wheel = |sample: &Sample| sample.wheelsets[index].wheels[place];
+            let most = |value: fn(&Wheel) -> f64| samples.iter().map(|s| value(&wheel(s))).fold(f64::MIN, f64::max);
+            let last = samples.last().map_or(0.0, |sample| wheel(sample).wear());
+            let remarks = samples.iter().fold(Flags::NONE, |all, s| all | Flags::from_bits(wheel(s).flags));
+            eprintln!(
+                "  wheelset {}, {side:5}: Y up to {:6.1} kN, Q {:6.1} kN, Y/Q {:5.2}; wear index at the end {last:6.1} N; \
+                 flags: {remarks}",
+                index + 1,
+                1e-3 * most(|w| w.loads.guiding_force),
+                1e-3 * most(|w| w.loads.wheel_load),
+                most(|w| w.loads.ratio()),
+            );
+        }
+    }
 }

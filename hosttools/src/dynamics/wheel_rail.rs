@@ -90,13 +90,12 @@ impl Wheel {
 }
 
 impl WheelRail<'_> {
-    /// Wrench of the rails on the wheelset about its centre, in the frame of the rails, and both wheels, right first.
-    #[must_use]
-    pub fn forces(&self, motion: &Motion) -> (Wrench, [Wheel; 2]) {
-        let mut wheels = [Wheel::default(); 2];
+    /// Wrench of the rails on the wheelset about its centre, in the frame of the rails; fills in both wheels, right first.
+    pub fn forces(&self, motion: &Motion, wheels: &mut [Wheel; 2]) -> Wrench {
         let mut total = Wrench::default();
         let mut contacts = Contacts::NONE;
-        for (side, wheel) in Side::ALL.into_iter().zip(&mut wheels) {
+        for (side, wheel) in Side::ALL.into_iter().zip(wheels) {
+            wheel.touches = [None; SLOTS];
             self.source.contacts_into(side, &motion.pose, &mut contacts);
             wheel.flags = contacts.flags.bits();
             let geometry = self.source.geometry(side);
@@ -104,7 +103,8 @@ impl WheelRail<'_> {
             for contact in &mut contacts.list {
                 contact.normal_force *= self.damped(geometry.nominal_radius, motion, contact);
                 let creepages = creepages(geometry, motion, contact);
-                let slip = libm::hypotf(creepages.longitudinal, creepages.lateral) * motion.speed as f32;
+                let Creepages { longitudinal: xi, lateral: eta, .. } = creepages;
+                let slip = (xi * xi + eta * eta).sqrt() * motion.speed as f32;
                 let patch = Patch::from(&*contact);
                 let forces = self.law.forces(&patch, &self.elasticity, &creepages, self.friction.at(slip));
                 on_wheel = on_wheel + contact_wrench(geometry, &motion.pose, contact, &forces);
@@ -114,7 +114,7 @@ impl WheelRail<'_> {
             wheel.loads = WheelLoads::new(side, &on_wheel);
             total = total + on_wheel;
         }
-        (total, wheels)
+        total
     }
 
     /// What the damping makes of a normal force, of the rates of the pose alone (rolling has no part along the normal):

@@ -3,7 +3,7 @@
 //! This is all that a co-simulation unit of a wheelset needs: state, inputs, [`Wheelset::step`]; nothing is allocated.
 
 use flangeway::wheelset::{Motion, Rates, Wrench};
-use flangeway::{Pose, Side};
+use flangeway::{Attitude, Pose, Side};
 use nalgebra::{Vector2, Vector3};
 
 use super::body::{Body, FrameTurn, LATERAL, PITCH, ROLL, VERTICAL, Vector5, YAW};
@@ -73,12 +73,11 @@ impl Wheelset {
     /// ```
     /// Left out are Coriolis' terms of the track frame, 2 θ' z' and 2 θ' y' in a cant ramp: below 1e-3 m/s² here.
     fn acceleration(&mut self, inputs: &Inputs, parameters: &Parameters, contact: &WheelRail<'_>) -> Vector5 {
-        let (wrench, wheels) = self.between_rails(inputs, contact);
-        self.wheels = wheels;
+        let wrench = self.between_rails(inputs, contact);
         let Parameters { mass_kg: mass, roll_yaw_inertia_kgm2: across, spin_inertia_kgm2: about } = *parameters;
         let (q, v) = (&self.body.position, &self.body.velocity);
-        let (sin_yaw, cos_yaw) = (libm::sin(q[YAW]), libm::cos(q[YAW]));
-        let (sin_roll, cos_roll) = (libm::sin(q[ROLL]), libm::cos(q[ROLL]));
+        let Attitude { yaw: psi, roll: phi } = Attitude::new(q[YAW], q[ROLL]);
+        let (sin_yaw, cos_yaw, sin_roll, cos_roll) = (psi.sin, psi.cos, phi.sin, phi.cos);
         let axle = Vector3::new(-sin_yaw * cos_roll, cos_yaw * cos_roll, sin_roll);
         let gravity: Vector2<f64> = inputs.track.apparent_gravity(inputs.speed);
         let (force, moment, loads) = (wrench.force, wrench.moment, &inputs.loads);
@@ -100,7 +99,7 @@ impl Wheelset {
         )
     }
 
-    /// Wrench of the rails, in the track frame, and both wheels.
+    /// Wrench of the rails in the track frame; fills in both wheels.
     ///
     /// The contact sees the pose against the displaced rails, whose own frame is moved by the lateral and vertical
     /// offset, turned by the cross level γ about x and by the lateral offset's slope σ about z, and moves along:
@@ -108,7 +107,7 @@ impl Wheelset {
     /// ```text
     /// y - y_r - γ r0,   ψ - σ,   z - z_r - γ y,   φ - γ
     /// ```
-    fn between_rails(&self, inputs: &Inputs, contact: &WheelRail<'_>) -> (Wrench, [Wheel; 2]) {
+    fn between_rails(&mut self, inputs: &Inputs, contact: &WheelRail<'_>) -> Wrench {
         let (q, v) = (&self.body.position, &self.body.velocity);
         let [rails, slopes] = inputs.rails;
         let (radius, speed) = (contact.source.geometry(Side::Right).nominal_radius, inputs.speed);
@@ -130,10 +129,10 @@ impl Wheelset {
             spin: v[PITCH],
             track_curvature: inputs.track.curvature,
         };
-        let (wrench, wheels) = contact.forces(&motion);
+        let wrench = contact.forces(&motion, &mut self.wheels);
         // Back to the track frame by the small turn.
         let turn = Vector3::new(rails.cross_level, 0.0, slopes.lateral);
         let back = |vector: Vector3<f64>| vector + turn.cross(&vector);
-        (Wrench { force: back(wrench.force), moment: back(wrench.moment) }, wheels)
+        Wrench { force: back(wrench.force), moment: back(wrench.moment) }
     }
 }

@@ -3,6 +3,7 @@
 mod errors;
 mod heat;
 pub(crate) mod page;
+pub(crate) mod plot;
 mod positions;
 mod profiles;
 pub mod rig;
@@ -10,6 +11,7 @@ mod rolling;
 pub(crate) mod style;
 mod sweep;
 mod transfer;
+pub(crate) mod vehicle;
 pub mod verify;
 
 use flangeway::ContactTable;

@@ -3,11 +3,11 @@
 use flangeway::{Pose, Side, Slot};
 use rayon::prelude::*;
 
-use super::plot::{Panel, csv, draw};
 use super::runs::Grounds;
 use super::{Check, Plate};
 use crate::error::Result;
 use crate::pair::Pair;
+use crate::report::plot::{Panel, csv, draw};
 use crate::report::style::{INK, Mark, colour};
 use crate::rigid::two_wheels;
 use crate::verify::height_for_load;
@@ -75,7 +75,7 @@ impl Map {
     fn extent(&self, band: Band, yaw: f64) -> Option<[f64; 2]> {
         let mut of = self.cells.iter().filter(|c| c.1 == yaw && (c.2 == band || c.2 == Band::Wide)).map(|c| c.0);
         let first = of.next()?;
-        Some([first, of.last().unwrap_or(first)])
+        Some([first, of.next_back().unwrap_or(first)])
     }
 
     /// Mean width (m) of a band over all yaws, counted in cells.

@@ -2,17 +2,20 @@
 
 use flangeway::Slot;
 
-use super::plot::{Curve, Panel, csv, draw};
 use super::runs::Runs;
 use super::wheelset::{both, points, steady, ways};
 use super::{Check, Plate};
 use crate::dynamics::record::{Sample, slot_forces};
 use crate::dynamics::wheel_rail::Wheel;
 use crate::error::Result;
+use crate::report::plot::{Curve, Panel, csv, draw};
 use crate::report::style::{GREY, INK, Mark, colour, slot_entries};
 
 /// Share of the wheel's normal force from which on a region takes part.
 const SHARE: f64 = 0.01;
+
+/// A number taken from a sample.
+type Quantity = fn(&Sample) -> f64;
 
 /// The outer leading wheel: the right one in the scenario's left-hand curve.
 fn outer(sample: &Sample) -> &Wheel {
@@ -71,12 +74,12 @@ pub(super) fn regions(runs: &Runs) -> Result<Plate> {
 
 /// The run of figure 13 by the table, beside the direct solver.
 pub(super) fn table(runs: &Runs) -> Result<Plate> {
-    let quantities: [(&str, fn(&Sample) -> f64); 3] = [
+    let quantities: [(&'static str, Quantity); 3] = [
         ("normal force (kN)", |s| outer(s).normal_force()),
         ("guiding force Y (kN)", |s| outer(s).loads.guiding_force),
         ("wheel load Q (kN)", |s| outer(s).loads.wheel_load),
     ];
-    let panel = |&(label, value): &(&'static str, fn(&Sample) -> f64)| {
+    let panel = |&(label, value): &(&'static str, Quantity)| {
         let curves = vec![
             Curve::new(Mark::Line, INK, points(&runs.bogie_by_table, 1e-3, value)),
             Curve::new(Mark::Dashes, GREY, points(&runs.bogie, 1e-3, value)),
@@ -97,7 +100,7 @@ pub(super) fn table(runs: &Runs) -> Result<Plate> {
     let mut entries = slot_entries(Mark::Line);
     entries.push((Mark::Line, INK, "table (lines)".into()));
     entries.push((Mark::Dashes, GREY, "dashed: direct solver".into()));
-    let rms = |value: fn(&Sample) -> f64| {
+    let rms = |value: Quantity| {
         let squares =
             |f: &dyn Fn((&Sample, &Sample)) -> f64| runs.bogie_by_table.iter().zip(&runs.bogie).map(f).sum::<f64>();
         let errors = squares(&|(a, b)| (value(a) - value(b)).powi(2));

@@ -3,15 +3,15 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use flangeway::{Pose, Side, Slot};
+use flangeway::{Pose, Side};
 
-use super::plot::{bars, csv};
 use super::runs::Grounds;
 use super::{Check, Plate};
 use crate::contact::{Method, Settings};
 use crate::error::Result;
 use crate::pair::Pair;
-use crate::report::style::{GREY, INK, colour};
+use crate::report::plot::{bars, csv};
+use crate::report::style::{GREY, INK};
 use crate::rigid::two_wheels;
 
 /// Poses, rounds, and lookups of each pose in a round.
@@ -77,10 +77,10 @@ pub(super) fn plate(grounds: &Grounds) -> Result<Plate> {
     let [lookup, flat, locus, by_sweep] = [0, 1, 2, 3].map(median);
     let all = [
         ("rigid table", 1.0, GREY),
-        ("3-D table", lookup, colour(Slot::Tread)),
-        ("2-D on line", flat, colour(Slot::FlangeRoot)),
-        ("3-D on line, silhouette", locus, colour(Slot::Flange)),
-        ("3-D on line, sweep", by_sweep, INK),
+        ("3-D table", lookup, INK),
+        ("2-D on line", flat, GREY),
+        ("3-D on line, silhouette", locus, GREY),
+        ("3-D on line, sweep", by_sweep, GREY),
     ];
     Ok(Plate {
         number: 15,

@@ -2,13 +2,13 @@
 
 use rayon::prelude::*;
 
-use super::plot::{Curve, Panel, csv, draw};
 use super::runs::{Grounds, bogie};
 use super::{Check, Plate};
 use crate::dynamics::body::YAW;
 use crate::dynamics::run::run;
 use crate::dynamics::scenario::{Method, SectionKind};
 use crate::error::Result;
+use crate::report::plot::{Curve, Panel, csv, draw};
 use crate::report::style::{INK, Mark, colour, slot_at};
 use crate::rigid::two_wheels;
 

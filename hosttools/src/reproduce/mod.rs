@@ -5,7 +5,6 @@ mod bogie;
 mod costs;
 mod curving;
 mod page;
-mod plot;
 mod rigid_contact;
 mod runs;
 mod wheelset;

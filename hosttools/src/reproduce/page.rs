@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::plot::significant;
 use super::{Check, Plate};
 use crate::report::page::{END, escaped, head};
+use crate::report::plot::significant;
 
 /// The whole page, self-contained.
 #[must_use]

@@ -3,13 +3,13 @@
 use flangeway::wheelset::nadal_limit;
 use flangeway::{SLOTS, Slot};
 
-use super::plot::{Curve, Panel, csv, draw};
 use super::runs::Runs;
 use super::{Check, Plate};
 use crate::dynamics::body::{LATERAL, YAW};
 use crate::dynamics::record::{Sample, slot_forces};
 use crate::dynamics::wheel_rail::Wheel;
 use crate::error::Result;
+use crate::report::plot::{Curve, Panel, csv, draw};
 use crate::report::style::{GREY, INK, Mark, colour};
 
 /// The outer wheel: the right one in the scenario's left-hand curve.

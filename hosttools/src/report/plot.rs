@@ -1,41 +1,41 @@
-//! What the figures of `reproduce` share: curves in panels, and the CSV beside them.
+//! Curves in panels, bars, and the CSV beside them: for figures whose axes follow from their data.
 
 use std::ops::Range;
 
 use plotters::prelude::*;
 
+use super::style::{Axis, INK, LEGEND, Mark, dashes, figure, legend, line, panel, panel_height, px};
 use crate::error::{Error, Result};
-use crate::report::style::{Axis, GREY, LEGEND, Mark, dashes, figure, legend, line, panel, panel_height, px};
 
 /// Height of a plot (shown pixels).
 const PLOT: u32 = 320;
 
 /// A curve of a panel.
-pub(super) struct Curve {
-    pub(super) mark: Mark,
-    pub(super) ink: RGBColor,
-    pub(super) points: Vec<(f64, f64)>,
+pub(crate) struct Curve {
+    pub(crate) mark: Mark,
+    pub(crate) ink: RGBColor,
+    pub(crate) points: Vec<(f64, f64)>,
 }
 
 impl Curve {
-    pub(super) fn new(mark: Mark, ink: RGBColor, points: Vec<(f64, f64)>) -> Self {
+    pub(crate) fn new(mark: Mark, ink: RGBColor, points: Vec<(f64, f64)>) -> Self {
         Self { mark, ink, points }
     }
 }
 
 /// A panel: title, labels of its axes with units, curves.
-pub(super) struct Panel {
-    pub(super) title: String,
-    pub(super) labels: [&'static str; 2],
-    pub(super) curves: Vec<Curve>,
+pub(crate) struct Panel {
+    pub(crate) title: String,
+    pub(crate) labels: [&'static str; 2],
+    pub(crate) curves: Vec<Curve>,
     /// Cells `[x, y, width, height]` filled with an ink, below the curves.
-    pub(super) cells: Vec<([f64; 4], RGBColor)>,
+    pub(crate) cells: Vec<([f64; 4], RGBColor)>,
     /// Ranges of x and y where they are not to follow from the data.
-    pub(super) ranges: Option<[Range<f64>; 2]>,
+    pub(crate) ranges: Option<[Range<f64>; 2]>,
 }
 
 impl Panel {
-    pub(super) fn new(title: &str, labels: [&'static str; 2], curves: Vec<Curve>) -> Self {
+    pub(crate) fn new(title: &str, labels: [&'static str; 2], curves: Vec<Curve>) -> Self {
         Self { title: title.into(), labels, curves, cells: Vec::new(), ranges: None }
     }
 
@@ -60,7 +60,7 @@ impl Panel {
 }
 
 /// Rows of panels, as many side by side as are given, under one legend; a note goes into the legend's row.
-pub(super) fn draw(name: &str, entries: &[(Mark, RGBColor, String)], rows: &[Vec<Panel>]) -> Result<String> {
+pub(crate) fn draw(name: &str, entries: &[(Mark, RGBColor, String)], rows: &[Vec<Panel>]) -> Result<String> {
     let height = LEGEND + rows.len() as u32 * panel_height(PLOT);
     figure(name, height, |area| {
         let (above, below) = area.split_vertically(px(LEGEND));
@@ -93,7 +93,7 @@ pub(super) fn draw(name: &str, entries: &[(Mark, RGBColor, String)], rows: &[Vec
 }
 
 /// Bars with a name and a value each, on a logarithmic scale.
-pub(super) fn bars(name: &str, title: &str, label: &str, bars: &[(&str, f64, RGBColor)]) -> Result<String> {
+pub(crate) fn bars(name: &str, title: &str, label: &str, bars: &[(&str, f64, RGBColor)]) -> Result<String> {
     let decades = |value: f64| libm::log10(value);
     let most = bars.iter().map(|(_, value, _)| decades(*value)).fold(0.0, f64::max).ceil() + 0.4;
     let least = bars.iter().map(|(_, value, _)| decades(*value)).fold(0.0, f64::min).floor();
@@ -104,7 +104,7 @@ pub(super) fn bars(name: &str, title: &str, label: &str, bars: &[(&str, f64, RGB
             let (left, middle) = (index as f64 + 0.2, index as f64 + 0.5);
             let corners = [(left, least), (left + 0.6, decades(*value))];
             chart.draw_series([Rectangle::new(corners, ink.filled())])?;
-            let style = crate::report::style::label_style(GREY);
+            let style = super::style::label_style(INK);
             let text = format!("{name}: {}", significant(*value));
             chart.draw_series([Text::new(text, (middle, decades(*value) + 0.06 * (most - least)), style)])?;
         }
@@ -117,7 +117,7 @@ fn nothing(_: &f64) -> String {
 }
 
 /// Three significant digits.
-pub(super) fn significant(value: f64) -> String {
+pub(crate) fn significant(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }
@@ -133,7 +133,7 @@ fn number(value: &f64) -> String {
 }
 
 /// A CSV file of numbers.
-pub(super) fn csv(columns: &[&str], rows: impl IntoIterator<Item = Vec<f64>>) -> Result<Vec<u8>> {
+pub(crate) fn csv(columns: &[&str], rows: impl IntoIterator<Item = Vec<f64>>) -> Result<Vec<u8>> {
     let failed = |e: csv::Error| Error::field("", "csv", e.to_string());
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(columns).map_err(failed)?;
