@@ -8,6 +8,7 @@ pub mod contacts;
 pub mod curve;
 pub mod dynamics;
 pub mod error;
+pub mod fmu;
 pub mod hertz;
 pub mod image;
 pub mod naive;

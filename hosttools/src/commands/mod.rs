@@ -4,6 +4,7 @@
 pub mod campaign;
 pub mod compile;
 pub mod creep;
+pub mod fmu;
 pub mod inspect;
 pub mod lookup;
 pub mod merge;
@@ -50,6 +51,8 @@ enum Command {
     Compile(compile::CompileArgs),
     /// Creep forces of contacts by one of four laws
     Creep(creep::CreepArgs),
+    /// Pack a wheelset as a co-simulation unit (FMI 2.0)
+    Fmu(fmu::FmuArgs),
     /// Print what a table says of itself
     Inspect(inspect::InspectArgs),
     /// Contacts of poses by a table
@@ -86,6 +89,7 @@ impl Cli {
             Command::Campaign(args) => return campaign::run(args),
             Command::Compile(args) => compile::run(args)?,
             Command::Creep(args) => creep::run(args)?,
+            Command::Fmu(args) => fmu::run(args)?,
             Command::Inspect(args) => inspect::run(args)?,
             Command::Lookup(args) => lookup::run(args)?,
             Command::Pil(args) => return pil::run(args),

@@ -183,7 +183,7 @@ impl Vehicle {
 
 impl Carried {
     /// What it does where it is carried, under an apparent gravity `[y, z]` (m/s²): M_x = H F_y.
-    fn load(&self, gravity: nalgebra::Vector2<f64>) -> Vector5 {
+    pub(crate) fn load(&self, gravity: nalgebra::Vector2<f64>) -> Vector5 {
         let [lateral, vertical] = [self.mass_kg * gravity.x, self.mass_kg * gravity.y];
         Vector5::new(lateral, vertical, self.height_m * lateral, 0.0, 0.0)
     }
