@@ -6,6 +6,7 @@ pub mod contact;
 pub mod contacts;
 pub mod curve;
 pub mod error;
+pub mod halfspace;
 pub mod hertz;
 pub mod image;
 pub mod naive;

@@ -1,0 +1,9 @@
+//! Normal contact of elastic half-spaces on a grid of rectangles with uniform pressure each.
+
+mod convolution;
+mod influence;
+mod normal;
+
+pub use convolution::Convolution;
+pub use influence::influence;
+pub use normal::{TOLERANCE, solve};
