@@ -27,7 +27,8 @@ impl Grid {
     fn solve(&self) -> (f64, f64, f64, usize) {
         let mut pressure = vec![0.0; self.overlap.len()];
         let mut convolution = Convolution::new(self.columns, self.rows, self.edges);
-        let steps = solve(&mut convolution, &self.overlap, &mut pressure);
+        let own = convolution.own_compliance();
+        let steps = solve(|p, u| convolution.apply(p, u), own, &self.overlap, &mut pressure);
         let element = self.edges[0] * self.edges[1];
         let area = pressure.iter().filter(|p| **p > 0.0).count() as f64 * element;
         (pressure.iter().sum::<f64>() * element, pressure.iter().copied().fold(0.0, f64::max), area, steps)

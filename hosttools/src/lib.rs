@@ -19,5 +19,6 @@ pub mod recipe;
 pub mod report;
 pub mod rig;
 pub mod rigid;
+pub mod semi_hertzian;
 pub mod spline;
 pub mod verify;

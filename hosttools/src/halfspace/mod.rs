@@ -3,7 +3,9 @@
 mod convolution;
 mod influence;
 mod normal;
+mod patch;
 
 pub use convolution::Convolution;
 pub use influence::influence;
 pub use normal::{TOLERANCE, solve};
+pub use patch::{EDGES, Patch, PatchRow, RowLoad, interaction, patches};

@@ -10,8 +10,6 @@
 //! form: Kalker, Three-Dimensional Elastic Bodies in Rolling Contact, 1990, chapter 4). The rigid approach is given
 //! here, so their steps that hold a given load fall away.
 
-use super::convolution::Convolution;
-
 /// Largest share of the greatest overlap by which an element may miss the contact condition.
 pub const TOLERANCE: f64 = 1e-5;
 
@@ -20,8 +18,14 @@ const MOST_STEPS: usize = 400;
 
 /// Solves for the pressure divided by E*, from a first guess in `pressure`, and returns the number of steps.
 ///
+/// `apply` gives displacements from pressures divided by E*; `own` is what it gives an element under unit pressure alone.
 /// An element without overlap takes no pressure: displacements are positive everywhere, so it cannot touch.
-pub fn solve(convolution: &mut Convolution, overlap: &[f64], pressure: &mut [f64]) -> usize {
+pub fn solve(
+    mut apply: impl FnMut(&[f64], &mut [f64]),
+    own: f64,
+    overlap: &[f64],
+    pressure: &mut [f64],
+) -> usize {
     let greatest = overlap.iter().copied().fold(0.0, f64::max);
     let mut gap = vec![0.0; overlap.len()];
     let mut direction = vec![0.0; overlap.len()];
@@ -29,13 +33,9 @@ pub fn solve(convolution: &mut Convolution, overlap: &[f64], pressure: &mut [f64
     for (p, &w) in pressure.iter_mut().zip(overlap) {
         *p = if w > 0.0 { p.max(0.0) } else { 0.0 };
     }
-    let gaps = |convolution: &mut Convolution, pressure: &[f64], gap: &mut [f64]| {
-        convolution.apply(pressure, gap);
-        for (e, w) in gap.iter_mut().zip(overlap) {
-            *e -= w;
-        }
-    };
-    gaps(convolution, pressure, &mut gap);
+    let below = |gap: &mut [f64]| gap.iter_mut().zip(overlap).for_each(|(e, w)| *e -= w);
+    apply(pressure, &mut gap);
+    below(&mut gap);
     let mut earlier = 0.0;
     for step in 0..MOST_STEPS {
         // Elements without pressure that overlap join, by their own stiffness alone.
@@ -58,7 +58,8 @@ pub fn solve(convolution: &mut Convolution, overlap: &[f64], pressure: &mut [f64
         }
         let (mut up, mut down) = (0.0, 0.0);
         if squares > 0.0 {
-            convolution.apply(&direction, &mut moved);
+            // K t: what the gaps would be without overlap.
+            apply(&direction, &mut moved);
             for ((e, t), r) in gap.iter().zip(&direction).zip(&moved) {
                 up += e * t;
                 down += r * t;
@@ -74,10 +75,10 @@ pub fn solve(convolution: &mut Convolution, overlap: &[f64], pressure: &mut [f64
                 }
             }
         }
-        for ((e, r), _) in gap.iter_mut().zip(&moved).zip(overlap) {
+        for (e, r) in gap.iter_mut().zip(&moved) {
             *e -= length * r;
         }
-        let scale = if length > 0.0 { length } else { convolution.own_compliance().recip() };
+        let scale = if length > 0.0 { length } else { own.recip() };
         let mut joined = false;
         for ((p, e), w) in pressure.iter_mut().zip(&gap).zip(overlap) {
             if *p == 0.0 && *w > 0.0 && *e < 0.0 {
@@ -86,7 +87,8 @@ pub fn solve(convolution: &mut Convolution, overlap: &[f64], pressure: &mut [f64
             }
         }
         if changed || joined {
-            gaps(convolution, pressure, &mut gap);
+            apply(pressure, &mut gap);
+            below(&mut gap);
         }
         earlier = if joined { 0.0 } else { squares };
     }
