@@ -78,7 +78,9 @@ fn forces_and_areas() {
         let patches = models[2].column(row.side, &canonical).patches(canonical.vertical);
         let area = 1e2 * (patches.iter().map(|p| p.area()).sum::<f64>() / row.area - 1.0);
         let greatest = patches.iter().flat_map(|p| &p.pressure).copied().fold(0.0, f64::max);
-        let ellipse = |s: &SlotState| if s.normal_force() > 0.0 { PI * s.semi_axis_x * s.semi_axis_y * s.indentation } else { 0.0 };
+        let ellipse = |s: &SlotState| {
+            if s.normal_force() > 0.0 { PI * s.semi_axis_x * s.semi_axis_y * s.indentation } else { 0.0 }
+        };
         let ellipses: f64 = models[2].solve(row.side, &pose).iter().map(ellipse).sum();
         println!(
             "{:>5} {:>2}: {hertz:6.2} {semi:6.2} {half:6.2}; {area:6.1} {:6.1}; {:6.1}; {} patches, {} steps",
@@ -92,6 +94,9 @@ fn forces_and_areas() {
         let hits = [half.abs() < 3.0, semi.abs() < 7.0, area.abs() < 10.0, semi.abs() < 3.0];
         hits.iter().zip(&mut within).for_each(|(hit, count)| *count += usize::from(*hit));
     }
-    println!("half-space within 3 %: {}, semi-Hertzian within 7 %: {}, area within 10 %: {}", within[0], within[1], within[2]);
+    println!(
+        "half-space within 3 %: {}, semi-Hertzian within 7 %: {}, area within 10 %: {}",
+        within[0], within[1], within[2]
+    );
     assert!(within[0] >= 20 && within[1] >= 18 && within[2] >= 18);
 }

@@ -106,8 +106,7 @@ impl Strips<'_> {
         for (i, here) in self.strips.iter().enumerate() {
             for (j, there) in self.strips.iter().enumerate() {
                 let felt = (self.felt)(here.zone, there.zone);
-                let across = here.row.rail.t - there.row.rail.t;
-                let distance = (across * across + (here.row.x - there.row.x).powi(2)).sqrt();
+                let distance = distance(&here.row, &there.row, lengths[j]);
                 let [outer, inner] = [0.5, -0.5].map(|half| (distance + half * there.width) / lengths[j]);
                 let ([g1, h1], [g0, h0]) = (table.at(outer), table.at(inner));
                 sinking[i * n + j] = felt * self.scale * (g1 - g0);
@@ -122,7 +121,8 @@ impl Strips<'_> {
         let mut active: Vec<usize> = (0..n).collect();
         loop {
             let m = active.len();
-            let mut matrix: Vec<f64> = active.iter().flat_map(|&i| active.iter().map(move |&j| sinking[i * n + j])).collect();
+            let mut matrix: Vec<f64> =
+                active.iter().flat_map(|&i| active.iter().map(move |&j| sinking[i * n + j])).collect();
             let mut right: Vec<f64> = active.iter().map(|&i| self.strips[i].row.overlap).collect();
             eliminate(&mut matrix, &mut right, m);
             if right.iter().all(|&v| v >= 0.0) {
@@ -142,7 +142,11 @@ impl Strips<'_> {
         let ratio: Vec<[f64; 2]> = (0..n)
             .map(|i| {
                 let weight = products[i] * self.strips[i].width;
-                if weight > 0.0 { [weight, (self.strips[i].row.half_curvature / bend(i)).clamp(0.2, 5.0)] } else { [0.0, 1.0] }
+                if weight > 0.0 {
+                    [weight, (self.strips[i].row.half_curvature / bend(i)).clamp(0.2, 5.0)]
+                } else {
+                    [0.0, 1.0]
+                }
             })
             .collect();
         for i in 0..n {
@@ -158,6 +162,18 @@ impl Strips<'_> {
             }
         }
     }
+}
+
+/// Distance (m) at which a strip of half length a is felt from the middle of another: beside a strip across; a shift Δx
+/// along the track counts only as far as it leads out of the strip.
+///
+/// ```text
+/// r² = Δs² + Δx² Δ² / (Δ² + a²),   Δ² = Δs² + Δx²
+/// ```
+fn distance(from: &Row, to: &Row, length: f64) -> f64 {
+    let (across2, along2) = ((from.rail.t - to.rail.t).powi(2), (from.x - to.x).powi(2));
+    let all2 = across2 + along2;
+    (across2 + along2 * all2 / (all2 + length * length)).sqrt()
 }
 
 /// Gaussian elimination in place; the matrix is nearly symmetric and positive, so no pivot is sought.

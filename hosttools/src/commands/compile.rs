@@ -6,7 +6,8 @@ use std::time::Instant;
 use serde_json::json;
 
 use super::print_json;
-use crate::compile::{Uniform, compile};
+use crate::compile::{Checkpoint, Uniform, checkpoint_key, compile_from};
+use crate::contact::Normal;
 use crate::error::{Error, Result};
 use crate::image::{folder_of, write_atomically};
 use crate::pair::Pair;
@@ -54,10 +55,19 @@ pub fn run(args: &CompileArgs) -> Result<()> {
         for warning in &warnings {
             eprintln!("flangeway: warning: {warning}");
         }
-        let compiled = compile(&recipe, &pair, args.uniform)?;
+        let mut checkpoint = Checkpoint::none();
+        if recipe.solver.normal == Normal::HalfSpace {
+            let path = Checkpoint::path_beside(&args.output);
+            checkpoint = Checkpoint::open(&path, checkpoint_key(&recipe, &pair, args.uniform))?;
+            if checkpoint.resumes() {
+                eprintln!("flangeway: going on from {}", path.display());
+            }
+        }
+        let compiled = compile_from(&recipe, &pair, args.uniform, &mut checkpoint)?;
+        write_atomically(&args.output, &compiled.image)?;
+        checkpoint.finish()?;
         Ok::<_, Error>((pair, warnings, compiled))
     })?;
-    write_atomically(&args.output, &compiled.image)?;
     let (seconds, bytes) = (start.elapsed().as_secs_f64(), compiled.image.len());
     let axes = &compiled.axes;
     let counts = [&axes.lateral, &axes.yaw, &axes.vertical, &axes.roll].map(Vec::len);

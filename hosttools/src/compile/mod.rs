@@ -6,7 +6,9 @@
 mod adaptive;
 mod axes;
 mod budget;
+mod checkpoint;
 mod fit;
+mod half_space;
 mod quantise;
 mod rigid_maps;
 mod sampler;
@@ -20,8 +22,9 @@ use sha2::{Digest, Sha256};
 pub use adaptive::Bound;
 pub use axes::{Axes, Uniform};
 pub use budget::{Budget, ChannelBudget};
+pub use checkpoint::Checkpoint;
 
-use crate::contact::{Curvature, Dimension, SlotState};
+use crate::contact::{Curvature, Dimension, Normal, SlotState};
 use crate::error::{Error, Result};
 use crate::image::{ImageParts, SideParts, write_image};
 use crate::pair::Pair;
@@ -54,20 +57,59 @@ pub struct Compiled {
 /// # Errors
 /// When the axes do not fit the byte budget, or a wheel misses its rail inside the recipe's ranges.
 pub fn compile(recipe: &Recipe, pair: &Pair, uniform: Option<Uniform>) -> Result<Compiled> {
-    let mut compiler = Compiler::new(recipe, pair);
+    compile_from(recipe, pair, uniform, &mut Checkpoint::none())
+}
+
+/// As [`compile`], going on where `checkpoint` stands: half-space tables take minutes.
+///
+/// # Errors
+/// As [`compile`], and when the checkpoint cannot be written.
+pub fn compile_from(
+    recipe: &Recipe,
+    pair: &Pair,
+    uniform: Option<Uniform>,
+    checkpoint: &mut Checkpoint,
+) -> Result<Compiled> {
+    let preparing = half_space::preparing(pair);
+    let mut compiler = Compiler::new(recipe, &preparing);
     let grid = &recipe.grid;
     let axes = [grid.lateral_m, grid.yaw_rad, grid.vertical_m, grid.roll_rad];
-    let (axes, bound) = match uniform {
-        Some(uniform) => (Axes::uniform(recipe, uniform), Bound::Counts),
-        None if axes.iter().any(|axis| axis.nodes == Nodes::Auto) => adaptive::refine(recipe, &mut compiler)?,
-        None => (Axes::coarsest(recipe, pair.sides())?, Bound::Counts),
+    let (axes, bound) = match (checkpoint.found(), uniform) {
+        (Some(found), _) => found,
+        (None, Some(uniform)) => (Axes::uniform(recipe, uniform), Bound::Counts),
+        (None, None) if axes.iter().any(|axis| axis.nodes == Nodes::Auto) => adaptive::refine(recipe, &mut compiler)?,
+        (None, None) => (Axes::coarsest(recipe, pair.sides())?, Bound::Counts),
     };
-    let table = compiler.assemble(axes, grid.node_values)?;
+    let solved = if is_half_space(pair) {
+        checkpoint.begin(&axes, bound)?;
+        compiler.half_space(pair, &axes, checkpoint)?
+    } else {
+        Vec::new()
+    };
+    let table = compiler.assemble_with(axes, grid.node_values, &solved)?;
     let view = ContactTable::new(&table.image).map_err(|e| Error::field("", "table", e.to_string()))?;
     let measured = verify::measure(&view, table.image.len(), pair, FIGURE_SAMPLES, FIGURE_LINES, FIGURE_SEED);
     let errors = measured.report.figures();
     let budget = budget::measure(&table, &view, &measured.samples);
-    Ok(Compiled { image: compiler.image(&table, errors)?, axes: table.axes, errors, budget, bound })
+    let image = image(recipe, pair, &table.axes, &table.sides, errors)?;
+    Ok(Compiled { image, axes: table.axes, errors, budget, bound })
+}
+
+fn is_half_space(pair: &Pair) -> bool {
+    pair.body(Side::Right).settings().normal == Normal::HalfSpace
+}
+
+/// What a half-space table depends on: recipe, profiles and program, and what the command line puts in their place.
+pub fn checkpoint_key(recipe: &Recipe, pair: &Pair, uniform: Option<Uniform>) -> [u8; 32] {
+    let mut hash = Sha256::new();
+    hash.update(concat!("flangeway-host ", env!("CARGO_PKG_VERSION")));
+    hash.update(&recipe.text);
+    hash.update(format!("{uniform:?} {}", recipe.grid.max_bytes));
+    for side in Side::ALL.into_iter().take(pair.sides()) {
+        hash.update(pair.source(side).wheel.source_hash);
+        hash.update(pair.source(side).rail.source_hash);
+    }
+    hash.finalize().into()
 }
 
 /// One side, compiled.
@@ -88,7 +130,14 @@ struct Assembled {
 }
 
 impl CompiledSide {
-    fn new(sampler: &Sampler<'_>, pair: &Pair, axes: &Axes, values: NodeValues) -> Result<Self> {
+    /// `half` holds the half-space solver's answers at the nodes, where the table is to have them.
+    fn new(
+        sampler: &Sampler<'_>,
+        pair: &Pair,
+        axes: &Axes,
+        values: NodeValues,
+        half: Option<&Vec<[SlotState; SLOTS]>>,
+    ) -> Result<Self> {
         let (roll, vertical) = rigid_maps::maps(sampler, axes);
         let mut nodes: Vec<[SlotState; SLOTS]> = Vec::with_capacity(axes.nodes());
         for &u in &axes.lateral {
@@ -98,9 +147,13 @@ impl CompiledSide {
                 }
             }
         }
+        let sampled = half.map(|_| nodes.clone());
         borrow_geometry(&mut nodes, axes);
         if values == NodeValues::Fitted {
             fit::fit(&fit::Drawing::new(pair, sampler.side, axes, &roll, &vertical)?, axes, &mut nodes);
+        }
+        if let (Some(sampled), Some(half)) = (&sampled, half) {
+            half_space::correct(&mut nodes, sampled, half);
         }
         let scales = quantise::scales(&nodes, pair.body(sampler.side).boundaries());
         let records = nodes.par_iter().map(|states| quantise::record(states, &scales)).collect();
@@ -150,28 +203,48 @@ impl<'a> Compiler<'a> {
         Self { recipe, pair, samplers: sides.map(|side| Sampler::new(recipe, pair, side)).collect() }
     }
 
-    /// The table of these axes.
-    fn assemble(&mut self, axes: Axes, values: NodeValues) -> Result<Assembled> {
-        let mut sides = Vec::with_capacity(self.samplers.len());
+    /// The half-space solver's answers at the nodes of these axes, side by side.
+    fn half_space(
+        &mut self,
+        pair: &Pair,
+        axes: &Axes,
+        checkpoint: &mut Checkpoint,
+    ) -> Result<Vec<Vec<[SlotState; SLOTS]>>> {
+        let mut solved = Vec::with_capacity(self.samplers.len());
         for sampler in &mut self.samplers {
-            sampler.prepare(&axes)?;
-            sides.push(CompiledSide::new(sampler, self.pair, &axes, values)?);
+            sampler.prepare(axes)?;
+            solved.push(half_space::solve(sampler, pair, axes, checkpoint)?);
         }
-        let mut assembled = Assembled { axes, sides, image: Vec::new() };
-        assembled.image = self.image(&assembled, ErrorFigures::default())?;
-        Ok(assembled)
+        Ok(solved)
     }
 
-    /// The image of a table, with its error figures.
-    fn image(&self, table: &Assembled, errors: ErrorFigures) -> Result<Vec<u8>> {
-        image(self.recipe, self.pair, &table.axes, &table.sides, errors)
+    /// The table of these axes.
+    fn assemble(&mut self, axes: Axes, values: NodeValues) -> Result<Assembled> {
+        self.assemble_with(axes, values, &[])
+    }
+
+    /// As [`Compiler::assemble`], with the half-space solver's answers at the nodes.
+    fn assemble_with(&mut self, axes: Axes, values: NodeValues, half: &[Vec<[SlotState; SLOTS]>]) -> Result<Assembled> {
+        let mut sides = Vec::with_capacity(self.samplers.len());
+        for (number, sampler) in self.samplers.iter_mut().enumerate() {
+            sampler.prepare(&axes)?;
+            sides.push(CompiledSide::new(sampler, self.pair, &axes, values, half.get(number))?);
+        }
+        let mut assembled = Assembled { axes, sides, image: Vec::new() };
+        assembled.image = image(self.recipe, self.pair, &assembled.axes, &assembled.sides, ErrorFigures::default())?;
+        Ok(assembled)
     }
 }
 
 fn image(recipe: &Recipe, pair: &Pair, axes: &Axes, sides: &[CompiledSide], errors: ErrorFigures) -> Result<Vec<u8>> {
     let settings = pair.body(Side::Right).settings();
     let solver = format!(
-        "hertz, {}, {} curvature, curvature floor {} 1/m, {} nodes",
+        "{}, {}, {} curvature, curvature floor {} 1/m, {} nodes",
+        match settings.normal {
+            Normal::Hertz => "hertz",
+            Normal::SemiHertzian => "semi-hertzian",
+            Normal::HalfSpace => "half-space",
+        },
         if settings.dimension == Dimension::Two { "2d" } else { "3d" },
         if settings.curvature == Curvature::Mean { "mean" } else { "local" },
         settings.curvature_floor,

@@ -185,12 +185,16 @@ pub struct Column<'a> {
 impl Column<'_> {
     /// The wheel's slots with the axle's height `vertical` (m, down; 0 = nominal radius above the crowns).
     pub fn slots(&mut self, vertical: f64) -> [SlotState; SLOTS] {
+        self.slots_by(self.body.settings.normal, vertical)
+    }
+
+    fn slots_by(&mut self, normal: Normal, vertical: f64) -> [SlotState; SLOTS] {
         let peaks = self.peaks(vertical);
         let mut slots = slots::gather(self.body, &self.ridge, self.centre(vertical), &self.samples, &peaks);
         let deepest = deepest(&slots);
-        if self.body.settings.normal != Normal::Hertz && deepest > ONSET {
+        if normal != Normal::Hertz && deepest > ONSET {
             let surface = self.surface(vertical);
-            let loads: Vec<RowLoad> = match self.body.settings.normal {
+            let loads: Vec<RowLoad> = match normal {
                 Normal::SemiHertzian => semi_hertzian::loads(&surface, self.body.contact_modulus),
                 _ => surface.patches(deepest).iter().flat_map(Patch::loads).collect(),
             };
@@ -226,6 +230,16 @@ impl Column<'_> {
     /// Total normal force (N) at a height.
     pub fn total_force(&mut self, vertical: f64) -> f64 {
         self.slots(vertical).iter().map(SlotState::normal_force).sum()
+    }
+
+    /// Total normal force (N) at a height, by the semi-Hertzian method in place of the half-space: a hundred times as
+    /// fast, for searches that need not end at an exact load.
+    pub fn estimated_force(&mut self, vertical: f64) -> f64 {
+        let normal = match self.body.settings.normal {
+            Normal::HalfSpace => Normal::SemiHertzian,
+            normal => normal,
+        };
+        self.slots_by(normal, vertical).iter().map(SlotState::normal_force).sum()
     }
 
     /// The greatest signed overlap (m) anywhere on the wheel, and its point; `None` where the wheel is not near.

@@ -64,13 +64,14 @@ pub(super) fn zones(body: &Body, ridge: &Ridge<'_>, centre: f64, samples: &[Samp
             i += 1;
         }
         // Where the overlap ends between two samples.
-        let crossing = |inside: usize, outside: Option<usize>| match outside.and_then(|k| samples.get(k).map(|s| (k, s))) {
-            Some((k, Sample::Near { depth, .. })) => {
-                let share = samples[inside].depth() / (samples[inside].depth() - depth);
-                wheel[inside].t + share * (wheel[k].t - wheel[inside].t)
-            }
-            _ => wheel[inside].t,
-        };
+        let crossing =
+            |inside: usize, outside: Option<usize>| match outside.and_then(|k| samples.get(k).map(|s| (k, s))) {
+                Some((k, Sample::Near { depth, .. })) => {
+                    let share = samples[inside].depth() / (samples[inside].depth() - depth);
+                    wheel[inside].t + share * (wheel[k].t - wheel[inside].t)
+                }
+                _ => wheel[inside].t,
+            };
         let ends = [crossing(first, first.checked_sub(1)), crossing(i - 1, Some(i))];
         let parameters = std::iter::once(ends[0]).chain(wheel[first..i].iter().map(|p| p.t)).chain([ends[1]]);
         let feet: Vec<[f64; 2]> =

@@ -20,12 +20,7 @@ const MOST_STEPS: usize = 400;
 ///
 /// `apply` gives displacements from pressures divided by E*; `own` is what it gives an element under unit pressure alone.
 /// An element without overlap takes no pressure: displacements are positive everywhere, so it cannot touch.
-pub fn solve(
-    mut apply: impl FnMut(&[f64], &mut [f64]),
-    own: f64,
-    overlap: &[f64],
-    pressure: &mut [f64],
-) -> usize {
+pub fn solve(mut apply: impl FnMut(&[f64], &mut [f64]), own: f64, overlap: &[f64], pressure: &mut [f64]) -> usize {
     let greatest = overlap.iter().copied().fold(0.0, f64::max);
     let mut gap = vec![0.0; overlap.len()];
     let mut direction = vec![0.0; overlap.len()];

@@ -183,7 +183,8 @@ fn faded(
             if place.zone == zone { own.copy_from_slice(p) } else { own.fill(0.0) }
         }
         convolution.apply(&own, &mut moved);
-        for (place, (u, m)) in rows.iter().zip(displacement.chunks_exact_mut(columns).zip(moved.chunks_exact(columns))) {
+        for (place, (u, m)) in rows.iter().zip(displacement.chunks_exact_mut(columns).zip(moved.chunks_exact(columns)))
+        {
             let felt: f64 = links[zone.min(place.zone)..zone.max(place.zone)].iter().product();
             for (u, m) in u.iter_mut().zip(m) {
                 *u += felt * m;
