@@ -44,7 +44,7 @@ impl Material {
 
 /// Complete elliptic integrals K and E for the complementary modulus `k1` = √(1 - e²) in (0, 1], by the
 /// arithmetic-geometric mean (Abramowitz and Stegun 17.6): K = π / (2 a_n), E = K (1 - Σ 2^(n-1) c_n²).
-fn elliptic(k1: f64) -> (f64, f64) {
+pub(crate) fn elliptic(k1: f64) -> (f64, f64) {
     let (mut a, mut b) = (1.0, k1);
     let mut sum = 0.5 * (1.0 - k1 * k1);
     let mut power = 0.5;

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use crate::contact::{Curvature, Dimension, Settings};
+use crate::contact::{Curvature, Dimension, Normal, Settings};
 use crate::error::{Error, Result};
 use crate::hertz::Material;
 use crate::profile::{LengthUnit, Profile, ProfileKind, ReadOptions, is_built_in, read_file};
@@ -148,15 +148,6 @@ pub struct SolverRecipe {
     pub curvature: Curvature,
     /// Smallest combined principal curvature (1/m) taken for Hertz.
     pub curvature_floor_per_m: Option<f64>,
-}
-
-/// Model of the normal contact.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Normal {
-    /// Hertz with the curvatures at the contact.
-    #[default]
-    Hertz,
 }
 
 /// `[grid]`: ranges of the table, a node count or `"auto"` an axis.
@@ -354,6 +345,7 @@ impl Recipe {
     pub fn settings(&self) -> Settings {
         let default = Settings::default();
         Settings {
+            normal: self.solver.normal,
             dimension: self.solver.dimension,
             curvature: self.solver.curvature,
             curvature_floor: self.solver.curvature_floor_per_m.unwrap_or(default.curvature_floor),

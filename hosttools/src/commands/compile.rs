@@ -6,7 +6,8 @@ use std::time::Instant;
 use serde_json::json;
 
 use super::print_json;
-use crate::compile::{Compiled, Part, Settled, Shard, Uniform, compile};
+use crate::compile::{Checkpoint, Compiled, Part, Settled, Shard, Uniform, checkpoint_key, compile_from};
+use crate::contact::Normal;
 use crate::error::Result;
 use crate::image::{folder_of, write_atomically};
 use crate::pair::Pair;
@@ -87,11 +88,21 @@ pub fn run(args: &CompileArgs) -> Result<()> {
             Shard::new(&recipe, &pair, settle()?, part)?.write(&args.output)?;
             eprintln!("{}: shard {part}, {:.1} s", args.output.display(), seconds());
         } else {
+            let mut checkpoint = Checkpoint::none();
+            if recipe.solver.normal == Normal::HalfSpace {
+                let path = Checkpoint::path_beside(&args.output);
+                let key = checkpoint_key(&recipe, &pair, args.uniform, settled.as_ref())?;
+                checkpoint = Checkpoint::open(&path, key)?;
+                if checkpoint.resumes() {
+                    eprintln!("flangeway: going on from {}", path.display());
+                }
+            }
             let compiled = match &settled {
-                Some(settled) => settled.compile(&recipe, &pair)?,
-                None => compile(&recipe, &pair, args.uniform)?,
+                Some(settled) => settled.compile(&recipe, &pair, &mut checkpoint)?,
+                None => compile_from(&recipe, &pair, args.uniform, &mut checkpoint)?,
             };
             write_atomically(&args.output, &compiled.image)?;
+            checkpoint.finish()?;
             tell(&args.output, pair.sides(), &compiled, seconds());
             if args.json {
                 print_json(&json(pair.sides(), &compiled, seconds(), &warnings))?;

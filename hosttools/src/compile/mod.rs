@@ -6,7 +6,9 @@
 mod adaptive;
 mod axes;
 mod budget;
+mod checkpoint;
 mod fit;
+mod half_space;
 mod quantise;
 mod rigid_maps;
 mod sampler;
@@ -22,9 +24,10 @@ use sha2::{Digest, Sha256};
 pub use adaptive::Bound;
 pub use axes::{Axes, Uniform};
 pub use budget::{Budget, ChannelBudget};
+pub use checkpoint::Checkpoint;
 pub use shard::{Part, Settled, Shard, merge};
 
-use crate::contact::{Curvature, Dimension, SlotState};
+use crate::contact::{Curvature, Dimension, Normal, SlotState};
 use crate::error::{Error, Result};
 use crate::image::{ImageParts, SideParts, write_image};
 use crate::pair::Pair;
@@ -61,10 +64,53 @@ pub struct Compiled {
 /// # Errors
 /// When the axes do not fit the byte budget, or a wheel misses its rail inside the recipe's ranges.
 pub fn compile(recipe: &Recipe, pair: &Pair, uniform: Option<Uniform>) -> Result<Compiled> {
-    let mut compiler = Compiler::new(recipe, pair);
-    let (axes, bound) = compiler.settle(uniform)?;
-    let table = compiler.assemble(axes, recipe.grid.node_values)?;
+    compile_from(recipe, pair, uniform, &mut Checkpoint::none())
+}
+
+/// As [`compile`], going on where `checkpoint` stands: half-space tables take minutes.
+///
+/// # Errors
+/// As [`compile`], and when the checkpoint cannot be written.
+pub fn compile_from(
+    recipe: &Recipe,
+    pair: &Pair,
+    uniform: Option<Uniform>,
+    checkpoint: &mut Checkpoint,
+) -> Result<Compiled> {
+    let preparing = half_space::preparing(pair);
+    let mut compiler = Compiler::new(recipe, &preparing);
+    let (axes, bound) = match checkpoint.found() {
+        Some(found) => found,
+        None => compiler.settle(uniform)?,
+    };
+    checkpoint.begin(&axes, bound)?;
+    let table = compiler.table(pair, axes, checkpoint)?;
     finish(recipe, pair, table, bound)
+}
+
+/// What a half-space table depends on: recipe, profiles and program, what the command line puts in their place, and
+/// axes settled before.
+///
+/// # Errors
+/// None that can be met with settled axes that were read.
+pub fn checkpoint_key(
+    recipe: &Recipe,
+    pair: &Pair,
+    uniform: Option<Uniform>,
+    settled: Option<&Settled>,
+) -> Result<[u8; 32]> {
+    let mut hash = Sha256::new();
+    hash.update(GENERATOR);
+    hash.update(&recipe.text);
+    hash.update(format!("{uniform:?} {}", recipe.grid.max_bytes));
+    for side in Side::ALL.into_iter().take(pair.sides()) {
+        hash.update(pair.source(side).wheel.source_hash);
+        hash.update(pair.source(side).rail.source_hash);
+    }
+    if let Some(settled) = settled {
+        hash.update(settled.digest()?);
+    }
+    Ok(hash.finalize().into())
 }
 
 /// Measures a table and puts the figures into its image.
@@ -103,10 +149,14 @@ impl Assembled {
 
 impl CompiledSide {
     fn new(pair: &Pair, side: Side, axes: &Axes, values: NodeValues, solved: Solved) -> Self {
-        let Solved { roll, vertical, mut nodes, points } = solved;
+        let Solved { roll, vertical, mut nodes, points, half_space } = solved;
+        let prepared = (!half_space.is_empty()).then(|| nodes.clone());
         borrow_geometry(&mut nodes, axes);
         if values == NodeValues::Fitted {
             fit::fit(&points, axes, &mut nodes);
+        }
+        if let Some(prepared) = prepared {
+            half_space::correct(&mut nodes, &prepared, &half_space);
         }
         let scales = quantise::scales(&nodes, pair.body(side).boundaries());
         let records = nodes.par_iter().map(|states| quantise::record(states, &scales)).collect();
@@ -156,7 +206,7 @@ impl<'a> Compiler<'a> {
         Self { recipe, pair, samplers: sides.map(|side| Sampler::new(recipe, pair, side)).collect() }
     }
 
-    /// The table of these axes.
+    /// The table of these axes by the solver that the compiler prepares tables with.
     fn assemble(&mut self, axes: Axes, values: NodeValues) -> Result<Assembled> {
         let mut sides = Vec::with_capacity(self.samplers.len());
         for sampler in &mut self.samplers {
@@ -164,6 +214,19 @@ impl<'a> Compiler<'a> {
             sides.push(CompiledSide::new(self.pair, sampler.side, &axes, values, solved));
         }
         Assembled::new(self.recipe, self.pair, axes, sides)
+    }
+
+    /// The finished table of these axes by the pair's own solver.
+    fn table(&mut self, pair: &Pair, axes: Axes, checkpoint: &mut Checkpoint) -> Result<Assembled> {
+        let values = self.recipe.grid.node_values;
+        let mut sides = Vec::with_capacity(self.samplers.len());
+        for sampler in &mut self.samplers {
+            sampler.prepare(&axes)?;
+            let half_space = half_space::solve(sampler, pair, &axes, checkpoint)?;
+            let solved = Solved { half_space, ..Solved::new(sampler, self.pair, &axes, values)? };
+            sides.push(CompiledSide::new(pair, sampler.side, &axes, values, solved));
+        }
+        Assembled::new(self.recipe, pair, axes, sides)
     }
 
     /// The axes that the recipe asks for, or the counts given instead.
@@ -181,7 +244,12 @@ impl<'a> Compiler<'a> {
 fn image(recipe: &Recipe, pair: &Pair, axes: &Axes, sides: &[CompiledSide], errors: ErrorFigures) -> Result<Vec<u8>> {
     let settings = pair.body(Side::Right).settings();
     let solver = format!(
-        "hertz, {}, {} curvature, curvature floor {} 1/m, {} nodes",
+        "{}, {}, {} curvature, curvature floor {} 1/m, {} nodes",
+        match settings.normal {
+            Normal::Hertz => "hertz",
+            Normal::SemiHertzian => "semi-hertzian",
+            Normal::HalfSpace => "half-space",
+        },
         if settings.dimension == Dimension::Two { "2d" } else { "3d" },
         if settings.curvature == Curvature::Mean { "mean" } else { "local" },
         settings.curvature_floor,

@@ -71,6 +71,14 @@ impl<'a> Sampler<'a> {
         column.and_then(|column| column.get(&vertical.to_bits())).copied().unwrap_or([SlotState::ABSENT; SLOTS])
     }
 
+    /// The canonical pose at lateral displacement, yaw and roll offset in which the wheel just touches.
+    pub(super) fn touching_pose(&self, [u, yaw, offset]: [f32; 3]) -> flangeway::Pose {
+        let geometry = self.pair.body(self.side).wheel().geometry();
+        let vertical = f64::from(self.touch(u, yaw, offset).vertical);
+        let at = flangeway::Displacement { lateral: f64::from(u), vertical };
+        flangeway::pose_with(geometry, &at, f64::from(yaw), f64::from(self.rest(u, yaw)) + f64::from(offset))
+    }
+
     fn misses(&self, u: f32) -> Error {
         let message = format!("a wheel misses its rail at a lateral position of {:.3} mm", 1e3 * u);
         Error::field(&self.recipe.path, "grid.lateral_m.range", message)
@@ -115,18 +123,8 @@ impl<'a> Sampler<'a> {
             (at, heights.filter(lacks).collect::<Vec<f32>>())
         };
         let missing: Vec<([f32; 3], Vec<f32>)> = all.map(lacking).filter(|(_, heights)| !heights.is_empty()).collect();
-        let geometry = self.pair.body(self.side).wheel().geometry();
         let solve = |(at, heights): &([f32; 3], Vec<f32>)| {
-            let [u, yaw, offset] = *at;
-            let roll = f64::from(self.rest(u, yaw)) + f64::from(offset);
-            let touching = f64::from(self.touch(u, yaw, offset).vertical);
-            let pose = flangeway::pose_with(
-                geometry,
-                &flangeway::Displacement { lateral: f64::from(u), vertical: touching },
-                f64::from(yaw),
-                roll,
-            );
-            debug_assert!((flangeway::displacement(geometry, &pose).vertical - touching).abs() < 1e-12);
+            let pose = self.touching_pose(*at);
             let mut column = self.pair.column(self.side, &pose);
             let states = |&z: &f32| (z.to_bits(), column.slots(pose.vertical + f64::from(z)));
             (key(*at), heights.iter().map(states).collect::<Vec<_>>())

@@ -16,6 +16,8 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::axes::{Axes, Uniform};
+use super::checkpoint::Checkpoint;
+use super::half_space;
 use super::solved::Solved;
 use super::{Assembled, Bound, Compiled, CompiledSide, Compiler, GENERATOR};
 use crate::error::{Error, Result};
@@ -76,7 +78,8 @@ impl Settled {
     /// # Errors
     /// As [`super::compile`].
     pub fn new(recipe: &Recipe, pair: &Pair, uniform: Option<Uniform>) -> Result<Self> {
-        let (axes, bound) = Compiler::new(recipe, pair).settle(uniform)?;
+        let preparing = half_space::preparing(pair);
+        let (axes, bound) = Compiler::new(recipe, &preparing).settle(uniform)?;
         Ok(Self {
             generator: GENERATOR.into(),
             recipe_path: recipe.path.clone(),
@@ -129,8 +132,10 @@ impl Settled {
     ///
     /// # Errors
     /// As [`super::compile`].
-    pub fn compile(&self, recipe: &Recipe, pair: &Pair) -> Result<Compiled> {
-        let table = Compiler::new(recipe, pair).assemble(self.axes(), recipe.grid.node_values)?;
+    pub fn compile(&self, recipe: &Recipe, pair: &Pair, checkpoint: &mut Checkpoint) -> Result<Compiled> {
+        let (axes, preparing) = (self.axes(), half_space::preparing(pair));
+        checkpoint.begin(&axes, self.bound)?;
+        let table = Compiler::new(recipe, &preparing).table(pair, axes, checkpoint)?;
         super::finish(recipe, pair, table, self.bound)
     }
 
@@ -150,7 +155,7 @@ impl Settled {
     }
 
     /// What must be the same in all shards of a table.
-    fn digest(&self) -> Result<[u8; 32]> {
+    pub(super) fn digest(&self) -> Result<[u8; 32]> {
         let bytes = postcard::to_allocvec(self).map_err(|e| Error::field("", "shard", e.to_string()))?;
         Ok(Sha256::digest(bytes).into())
     }
@@ -174,9 +179,10 @@ impl Shard {
     pub fn new(recipe: &Recipe, pair: &Pair, settled: Settled, part: Part) -> Result<Self> {
         let axes = settled.axes();
         let own: Vec<usize> = part.intervals(&axes).collect();
+        let preparing = half_space::preparing(pair);
         let mut sides = Vec::new();
-        for sampler in &mut Compiler::new(recipe, pair).samplers {
-            let solved = Solved::intervals(sampler, pair, &axes, recipe.grid.node_values, &own)?;
+        for sampler in &mut Compiler::new(recipe, &preparing).samplers {
+            let solved = Solved::intervals(sampler, [&preparing, pair], &axes, recipe.grid.node_values, &own)?;
             sides.push(own.iter().copied().zip(solved).collect());
         }
         Ok(Self { settled, part, sides })

@@ -3,7 +3,9 @@
 use flangeway::SLOTS;
 
 use super::axes::{Axes, REFINEMENT};
+use super::checkpoint::Checkpoint;
 use super::fit::{self, Points};
+use super::half_space;
 use super::rigid_maps;
 use super::sampler::Sampler;
 use crate::contact::SlotState;
@@ -23,6 +25,8 @@ pub(super) struct Solved {
     pub(super) nodes: Vec<[SlotState; SLOTS]>,
     /// Poses inside the cells that node values are fitted to; none where they are sampled.
     pub(super) points: Points,
+    /// The half-space solver's answers at the nodes; none where the table is by another one.
+    pub(super) half_space: Vec<[SlotState; SLOTS]>,
 }
 
 impl Solved {
@@ -34,15 +38,18 @@ impl Solved {
         Ok(solved)
     }
 
-    /// The parts of these lateral intervals.
+    /// The parts of these lateral intervals. The pairs are the one that the table is prepared with and its own.
     pub(super) fn intervals(
         sampler: &mut Sampler<'_>,
-        pair: &Pair,
+        [preparing, pair]: [&Pair; 2],
         axes: &Axes,
         values: NodeValues,
         lateral: &[usize],
     ) -> Result<Vec<Self>> {
-        let (solved, points) = Self::around(sampler, pair, axes, values, lateral)?;
+        let (mut solved, points) = Self::around(sampler, preparing, axes, values, lateral)?;
+        let around = axes.around(lateral);
+        let half_space = half_space::solve(sampler, pair, &around, &mut Checkpoint::none())?;
+        solved.half_space = spread(&half_space, &around, axes);
         let part = |(&interval, points): (&usize, Points)| Self { points, ..solved.interval(axes, interval) };
         Ok(lateral.iter().zip(points).map(part).collect())
     }
@@ -71,7 +78,7 @@ impl Solved {
             }
             NodeValues::Sampled => lateral.iter().map(|_| Points::default()).collect(),
         };
-        Ok((Self { roll, vertical, nodes, points: Points::default() }, points))
+        Ok((Self { roll, vertical, nodes, ..Self::default() }, points))
     }
 
     /// The part of one interval, without its poses.
@@ -80,10 +87,14 @@ impl Solved {
         let refined = usize::from(REFINEMENT[0]);
         let last = usize::from(interval + 2 == axes.lateral.len());
         let rows = refined * interval..refined * (interval + 1) + last;
+        let part = |all: &[[SlotState; SLOTS]]| {
+            all.get(nodes * interval..nodes * (interval + 1 + last)).unwrap_or_default().to_vec()
+        };
         Self {
             roll: self.roll[roll * rows.start..roll * rows.end].to_vec(),
             vertical: self.vertical[vertical * rows.start..vertical * rows.end].to_vec(),
-            nodes: self.nodes[nodes * interval..nodes * (interval + 1 + last)].to_vec(),
+            nodes: part(&self.nodes),
+            half_space: part(&self.half_space),
             points: Points::default(),
         }
     }
@@ -94,6 +105,7 @@ impl Solved {
         self.vertical.append(&mut next.vertical);
         self.nodes.append(&mut next.nodes);
         self.points.append(next.points);
+        self.half_space.append(&mut next.half_space);
     }
 
     /// Whether this is all of a table of these axes.
@@ -102,6 +114,7 @@ impl Solved {
         let rows = axes.rigid()[0].len();
         let counts = (self.roll.len(), self.vertical.len(), self.nodes.len());
         counts == (roll * rows, vertical * rows, nodes * axes.lateral.len())
+            && (self.half_space.is_empty() || self.half_space.len() == self.nodes.len())
             && self.points.places.len() == self.points.points.len()
             && self.points.places.iter().all(|place| place.is_in(axes))
     }
@@ -112,4 +125,17 @@ impl Solved {
 fn lengths(axes: &Axes) -> [usize; 3] {
     let [_, yaw, roll] = axes.rigid().map(<[f32]>::len);
     [yaw, yaw * roll, axes.nodes() / axes.lateral.len()]
+}
+
+/// States at the nodes of some lateral nodes, put where they belong among those of all; none of none.
+fn spread(part: &[[SlotState; SLOTS]], around: &Axes, axes: &Axes) -> Vec<[SlotState; SLOTS]> {
+    if part.is_empty() {
+        return Vec::new();
+    }
+    let [_, _, plane] = lengths(axes);
+    let mut planes = part.chunks(plane);
+    let mut taken = around.lateral.iter().peekable();
+    let absent = vec![[SlotState::ABSENT; SLOTS]; plane];
+    let of = |u: &f32| taken.next_if_eq(&u).and_then(|_| planes.next()).unwrap_or(&absent).to_vec();
+    axes.lateral.iter().flat_map(of).collect()
 }

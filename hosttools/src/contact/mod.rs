@@ -5,21 +5,30 @@
 
 mod rail;
 mod ridge;
+mod rows;
+mod shares;
 mod slots;
 mod wheel;
 
 pub use rail::{FAR, Foot, Rail};
 pub use ridge::{Method, Ridge, RidgePoint};
+pub use rows::{Row, Zone};
 pub use slots::{Peak, SlotState};
 pub use wheel::{Orientation, SAMPLE_STEP, SurfacePoint, Wheel, WheelPoint};
 
 use ridge::Sample;
+
+use crate::halfspace::{self, Patch, RowLoad};
+use crate::semi_hertzian;
 
 /// Slots of a wheel: tread, flange root, flange.
 pub const SLOTS: usize = 3;
 
 /// Between samples [`SAMPLE_STEP`] apart the overlap exceeds them by a few micrometres at the most (m).
 const BETWEEN_SAMPLES: f64 = 20e-6;
+/// Indentation (m) up to which Hertz is asked whatever the model: its force, some 10 N, is of no account, and a patch is
+/// hardly wider than the profile's samples.
+const ONSET: f64 = 0.5e-6;
 /// A height within this (m) of an earlier one need look only at samples that can have become the highest.
 const NEARBY: f64 = 0.2e-3;
 
@@ -46,9 +55,26 @@ pub enum Curvature {
     Local,
 }
 
+/// Model of the normal contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Normal {
+    /// Hertz with the curvatures at the contact.
+    #[default]
+    Hertz,
+    /// Strips with Hertz's pressure along the track ([`crate::semi_hertzian`]).
+    SemiHertzian,
+    /// The elastic half-space on a grid ([`crate::halfspace`]).
+    HalfSpace,
+}
+
 /// Settings of the direct solver.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
+    /// How the normal force is found.
+    pub normal: Normal,
+    /// Largest edges (m) of the half-space's elements, along the track and across.
+    pub elements: [f64; 2],
     /// Search with or without yaw.
     pub dimension: Dimension,
     /// How the greatest overlap around the wheel is found.
@@ -62,7 +88,14 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { dimension: Dimension::Three, method: Method::Locus, curvature: Curvature::Mean, curvature_floor: 0.1 }
+        Self {
+            normal: Normal::Hertz,
+            elements: halfspace::EDGES,
+            dimension: Dimension::Three,
+            method: Method::Locus,
+            curvature: Curvature::Mean,
+            curvature_floor: 0.1,
+        }
     }
 }
 
@@ -152,8 +185,38 @@ pub struct Column<'a> {
 impl Column<'_> {
     /// The wheel's slots with the axle's height `vertical` (m, down; 0 = nominal radius above the crowns).
     pub fn slots(&mut self, vertical: f64) -> [SlotState; SLOTS] {
+        self.slots_by(self.body.settings.normal, vertical)
+    }
+
+    fn slots_by(&mut self, normal: Normal, vertical: f64) -> [SlotState; SLOTS] {
         let peaks = self.peaks(vertical);
-        slots::gather(self.body, &self.ridge, self.centre(vertical), &self.samples, &peaks)
+        let mut slots = slots::gather(self.body, &self.ridge, self.centre(vertical), &self.samples, &peaks);
+        let deepest = deepest(&slots);
+        if normal != Normal::Hertz && deepest > ONSET {
+            let surface = self.surface(vertical);
+            let loads: Vec<RowLoad> = match normal {
+                Normal::SemiHertzian => semi_hertzian::loads(&surface, self.body.contact_modulus),
+                _ => surface.patches(deepest).iter().flat_map(Patch::loads).collect(),
+            };
+            if !loads.is_empty() {
+                shares::assign(self.body, &mut slots, &loads);
+            }
+        }
+        slots
+    }
+
+    /// The patches of the elastic half-space at a height (m), whatever the settings' model; none without contact.
+    pub fn patches(&mut self, vertical: f64) -> Vec<Patch> {
+        let peaks = self.peaks(vertical);
+        let deepest = peaks.iter().map(|peak| peak.point.depth()).fold(0.0, f64::max);
+        if deepest > ONSET { self.surface(vertical).patches(deepest) } else { Vec::new() }
+    }
+
+    /// What lies between wheel and rail where they overlap; the samples must be those of this height.
+    fn surface(&self, vertical: f64) -> Surface<'_> {
+        let centre = self.centre(vertical);
+        let zones = rows::zones(self.body, &self.ridge, centre, &self.samples);
+        Surface { body: self.body, ridge: &self.ridge, centre, zones }
     }
 
     /// Every local maximum of the overlap, flange side first.
@@ -167,6 +230,16 @@ impl Column<'_> {
     /// Total normal force (N) at a height.
     pub fn total_force(&mut self, vertical: f64) -> f64 {
         self.slots(vertical).iter().map(SlotState::normal_force).sum()
+    }
+
+    /// Total normal force (N) at a height, by the semi-Hertzian method in place of the half-space: a hundred times as
+    /// fast, for searches that need not end at an exact load.
+    pub fn estimated_force(&mut self, vertical: f64) -> f64 {
+        let normal = match self.body.settings.normal {
+            Normal::HalfSpace => Normal::SemiHertzian,
+            normal => normal,
+        };
+        self.slots_by(normal, vertical).iter().map(SlotState::normal_force).sum()
     }
 
     /// The greatest signed overlap (m) anywhere on the wheel, and its point; `None` where the wheel is not near.
@@ -254,6 +327,39 @@ impl Column<'_> {
 
     fn centre(&self, vertical: f64) -> f64 {
         vertical - self.body.wheel.geometry().nominal_radius
+    }
+}
+
+fn deepest(slots: &[SlotState; SLOTS]) -> f64 {
+    slots.iter().map(|slot| slot.indentation).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Wheel and rail at one pose, where they overlap.
+pub struct Surface<'a> {
+    body: &'a Body,
+    ridge: &'a Ridge<'a>,
+    centre: f64,
+    zones: Vec<Zone>,
+}
+
+impl Surface<'_> {
+    /// Stretches of the rail's profile with overlap, flange side first.
+    pub fn zones(&self) -> &[Zone] {
+        &self.zones
+    }
+
+    /// The row at a rail parameter (m) in a zone.
+    pub fn row(&self, zone: &Zone, s: f64) -> Option<Row> {
+        rows::row(self.body, self.ridge, self.centre, zone, s)
+    }
+
+    /// Overlaps (m) along a row at multiples of `step` (m): `found` is told the multiple and the overlap, if positive.
+    pub fn along(&self, row: &Row, step: f64, found: impl FnMut(i64, f64)) {
+        rows::along(self.body, self.ridge, self.centre, row, step, found);
+    }
+
+    fn patches(&self, deepest: f64) -> Vec<Patch> {
+        halfspace::patches(self, deepest, self.body.contact_modulus, self.body.settings.elements)
     }
 }
 

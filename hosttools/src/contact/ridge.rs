@@ -91,6 +91,11 @@ impl<'a> Ridge<'a> {
         &self.orientation
     }
 
+    /// Lateral position of the wheelset's centre (m).
+    pub(super) fn lateral(&self) -> f64 {
+        self.lateral
+    }
+
     /// Samples of the ridge with the wheelset's centre at height `centre` (m, down).
     pub(super) fn samples(&self, centre: f64, samples: &mut Vec<Sample>) {
         samples.clear();

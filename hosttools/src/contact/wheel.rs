@@ -94,6 +94,15 @@ impl Orientation {
         Some(self.place(p, around))
     }
 
+    /// As [`Orientation::section`] for a point `axial` along the axle at this radius: `[y, z]` alone.
+    #[inline]
+    pub fn cut(&self, axial: f64, radius: f64, x: f64) -> Option<[f64; 2]> {
+        let [sin, cos] = self.around((x + self.sin_yaw * axial * self.cos_roll) / (self.cos_yaw * radius))?;
+        let (forward, down) = (radius * sin, radius * cos);
+        let side = axial * self.cos_roll - down * self.sin_roll;
+        Some([self.sin_yaw * forward + self.cos_yaw * side, axial * self.sin_roll + down * self.cos_roll])
+    }
+
     /// The x (m, from the wheelset's centre) of the section through the axle at a distance along it.
     pub fn section_centre(&self, axial: f64) -> f64 {
         -self.sin_yaw * axial * self.cos_roll
@@ -166,6 +175,13 @@ impl Wheel {
     /// Samples along the profile from flange to field side.
     pub fn samples(&self) -> &[WheelPoint] {
         &self.samples
+    }
+
+    /// Distance along the axle and radius (m) of the profile's point at parameter `t` (m).
+    #[inline]
+    pub fn place(&self, t: f64) -> (f64, f64) {
+        let [y, z] = self.curve.jet(t).position;
+        (self.geometry.lateral_position + y, self.geometry.nominal_radius + z)
     }
 
     /// The profile's point at parameter `t` (m).

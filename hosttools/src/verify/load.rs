@@ -2,14 +2,15 @@
 
 use crate::contact::Column;
 
-/// Height (m) of the axle at which the total normal force is `load` (N); `None` where the wheel misses the rail.
+/// Height (m) of the axle at which the total normal force is `load` (N), by [`Column::estimated_force`]; `None` where the
+/// wheel misses the rail.
 ///
 /// Regula falsi (Illinois) on N^(2/3), which is nearly linear in the height because N = C δ^1.5.
 pub fn height_for_load(column: &mut Column<'_>, load: f64) -> Option<f64> {
     let (touching, point) = column.touching(None)?;
     let target = libm::cbrt(load * load);
     let mut f = |vertical: f64| {
-        let force = column.total_force(vertical);
+        let force = column.estimated_force(vertical);
         libm::cbrt(force * force) - target
     };
     // δ ≈ (N / C)^(2/3) with C of a typical contact, divided by cos γ, as a first bracket.

@@ -1,0 +1,169 @@
+//! Half-space solutions on disk while a table is being compiled, so that an interrupted run goes on where it was.
+//!
+//! ```text
+//! 32 bytes  SHA-256 of what the table depends on
+//! blocks    length of the payload (u32), CRC-32C of it (u32), payload
+//! ```
+//! The first block holds what ended the refinement of the axes and the axes themselves, each other one a side and the nodes of some columns. A block that was cut off or
+//! does not match its checksum ends the file; what stands before it is used. All numbers are little-endian.
+
+use std::fs::{File, OpenOptions};
+use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
+use std::path::{Path, PathBuf};
+
+use crc::{CRC_32_ISCSI, Crc};
+use flangeway::{CHANNELS, SLOTS, Side};
+
+use super::adaptive::Bound;
+use super::axes::Axes;
+use super::quantise;
+use crate::contact::SlotState;
+use crate::error::{Error, Result};
+
+const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
+const KEY: usize = 32;
+/// What may have ended the refinement of the axes, by its number in the file.
+const BOUNDS: [Bound; 4] = [Bound::Counts, Bound::Bytes, Bound::Error, Bound::Resolved];
+/// Bytes of a slot: its channels and two flags.
+const SLOT_BYTES: usize = 8 * CHANNELS + 2;
+
+/// Where a compilation stands, and the file that remembers it.
+#[derive(Default)]
+pub struct Checkpoint {
+    file: Option<(PathBuf, File)>,
+    blocks: Vec<Vec<u8>>,
+}
+
+impl Checkpoint {
+    /// The file a table's checkpoint is kept in while the table is compiled: `T.fwt.partial` beside `T.fwt`.
+    pub fn path_beside(output: &Path) -> PathBuf {
+        let mut name = output.as_os_str().to_owned();
+        name.push(".partial");
+        name.into()
+    }
+
+    /// No file: nothing is kept.
+    pub fn none() -> Self {
+        Self::default()
+    }
+
+    /// Opens a checkpoint, or begins one. One of another recipe, profile or version of the program begins anew.
+    ///
+    /// # Errors
+    /// When the file cannot be read or written.
+    pub fn open(path: &Path, key: [u8; KEY]) -> Result<Self> {
+        let failed = |e: std::io::Error| Error::file(path, e.to_string());
+        let mut file =
+            OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).map_err(failed)?;
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes).map_err(failed)?;
+        let (blocks, length) = match bytes.strip_prefix(&key) {
+            Some(rest) => read_blocks(rest),
+            None => (Vec::new(), 0),
+        };
+        file.set_len((KEY + length) as u64).map_err(failed)?;
+        file.rewind().map_err(failed)?;
+        file.write_all(&key).map_err(failed)?;
+        file.seek(SeekFrom::End(0)).map_err(failed)?;
+        Ok(Self { file: Some((path.into(), file)), blocks })
+    }
+
+    /// Whether there is something to go on from.
+    pub fn resumes(&self) -> bool {
+        !self.blocks.is_empty()
+    }
+
+    /// Removes the file: the table stands.
+    ///
+    /// # Errors
+    /// When it cannot be removed.
+    pub fn finish(self) -> Result<()> {
+        let Some((path, file)) = self.file else { return Ok(()) };
+        drop(file);
+        std::fs::remove_file(&path).map_err(|e| Error::file(path, e.to_string()))
+    }
+
+    fn append(&mut self, payload: &[u8]) -> Result<()> {
+        let Some((path, file)) = &mut self.file else { return Ok(()) };
+        let mut block = Vec::with_capacity(8 + payload.len());
+        block.extend((payload.len() as u32).to_le_bytes());
+        block.extend(CRC.checksum(payload).to_le_bytes());
+        block.extend(payload);
+        file.write_all(&block).and_then(|()| file.sync_data()).map_err(|e| Error::file(path, e.to_string()))
+    }
+
+    /// The axes that an earlier run settled on, and what ended their refinement.
+    pub(super) fn found(&self) -> Option<(Axes, Bound)> {
+        let (&bound, mut rest) = self.blocks.first()?.split_first()?;
+        let bound = *BOUNDS.get(usize::from(bound))?;
+        let mut axis = || {
+            let count = u32::from_le_bytes(*rest.split_off(..4)?.first_chunk()?) as usize;
+            let bytes = rest.split_off(..4 * count)?;
+            Some(bytes.as_chunks().0.iter().map(|b| f32::from_le_bytes(*b)).collect::<Vec<f32>>())
+        };
+        let (lateral, yaw, roll, vertical) = (axis()?, axis()?, axis()?, axis()?);
+        Some((Axes::new(lateral, yaw, roll, vertical), bound))
+    }
+
+    /// Remembers the axes, unless they are from here.
+    pub(super) fn begin(&mut self, axes: &Axes, bound: Bound) -> Result<()> {
+        if self.resumes() {
+            return Ok(());
+        }
+        let mut payload = vec![BOUNDS.iter().position(|b| *b == bound).unwrap_or_default() as u8];
+        for axis in [&axes.lateral, &axes.yaw, &axes.roll, &axes.vertical] {
+            payload.extend((axis.len() as u32).to_le_bytes());
+            payload.extend(axis.iter().flat_map(|v| v.to_le_bytes()));
+        }
+        self.append(&payload)
+    }
+
+    /// The first nodes of a side, whole columns of `heights` nodes.
+    pub(super) fn solved(&self, side: Side, heights: usize) -> Vec<[SlotState; SLOTS]> {
+        let of_side = self.blocks.iter().skip(1).filter(|block| block.first() == Some(&(side as u8)));
+        let slots = of_side.flat_map(|block| block[1..].as_chunks::<SLOT_BYTES>().0.iter().map(decode));
+        let slots: Vec<SlotState> = slots.collect();
+        let mut nodes: Vec<[SlotState; SLOTS]> = slots.as_chunks().0.to_vec();
+        nodes.truncate(nodes.len() / heights * heights);
+        nodes
+    }
+
+    /// Remembers the next nodes of a side.
+    pub(super) fn add(&mut self, side: Side, nodes: &[[SlotState; SLOTS]]) -> Result<()> {
+        let mut payload = vec![side as u8];
+        payload.extend(nodes.iter().flatten().flat_map(encode));
+        self.append(&payload)
+    }
+}
+
+/// Whole blocks from the start, and how many bytes they take.
+fn read_blocks(bytes: &[u8]) -> (Vec<Vec<u8>>, usize) {
+    let (mut blocks, mut rest) = (Vec::new(), bytes);
+    while let Some((head, tail)) = rest.split_first_chunk::<8>() {
+        let number = |n: usize| u32::from_le_bytes([head[n], head[n + 1], head[n + 2], head[n + 3]]);
+        let Some((payload, after)) = tail.split_at_checked(number(0) as usize) else { break };
+        if CRC.checksum(payload) != number(4) {
+            break;
+        }
+        blocks.push(payload.to_vec());
+        rest = after;
+    }
+    (blocks, bytes.len() - rest.len())
+}
+
+fn encode(state: &SlotState) -> Vec<u8> {
+    let mut bytes: Vec<u8> = quantise::values(state).iter().flat_map(|v| v.to_le_bytes()).collect();
+    bytes.extend([u8::from(state.conformal), u8::from(state.present)]);
+    bytes
+}
+
+fn decode(bytes: &[u8; SLOT_BYTES]) -> SlotState {
+    let (numbers, flags) = bytes.split_at(8 * CHANNELS);
+    let mut values = [0.0; CHANNELS];
+    for (value, bytes) in values.iter_mut().zip(numbers.as_chunks().0) {
+        *value = f64::from_le_bytes(*bytes);
+    }
+    let mut state = SlotState { conformal: flags[0] != 0, present: flags[1] != 0, ..SlotState::ABSENT };
+    quantise::set_values(&mut state, values);
+    state
+}
