@@ -52,7 +52,8 @@ pub(super) fn evaluate(inputs: &[f64], contact: &WheelRail<'_>, outputs: &mut [f
         spin,
         track_curvature,
     };
-    let (wrench, wheels) = contact.forces(&motion);
+    let mut wheels = [Wheel::default(); 2];
+    let wrench = contact.forces(&motion, &mut wheels);
     for (place, value) in outputs.iter_mut().zip(wrench.force.iter().chain(&wrench.moment)) {
         *place = *value;
     }
