@@ -180,7 +180,8 @@ pub(super) fn wear(runs: &Runs) -> Result<Plate> {
             1e2 * (full / flat - 1.0)
         ),
         difference: "Agrees in sign. Without the yaw the contact stays in the flange root, where it slips less than on the \
-                     flange.",
+                     flange; and there the 2-D wheel, whose section does not turn with the yaw, chatters between flange \
+                     root and flange, so its wear is a mean.",
         checks: vec![Check {
             figure: 14,
             claim: "total wear index is larger in 3-D",

@@ -50,8 +50,12 @@ pub(super) fn lateral(runs: &Runs) -> Result<Plate> {
     let samples = [runs.wheelset_flat.as_slice(), &runs.wheelset];
     let y: fn(&Sample) -> f64 = |sample| sample.wheelsets[0].body.position[LATERAL];
     let yaw: fn(&Sample) -> f64 = |sample| sample.wheelsets[0].body.position[YAW];
-    let rows =
-        [vec![both("lateral displacement", "y (mm)", samples, 1e3, y), both("yaw", "yaw (mrad)", samples, 1e3, yaw)]];
+    let pairs = samples[0].iter().zip(samples[1]).step_by(4);
+    let less = Curve::new(Mark::Line, INK, pairs.map(|(a, b)| (b.distance, 1e6 * (y(a) - y(b)))).collect());
+    let rows = [vec![
+        both("lateral displacement", "y (mm)", samples, 1e3, y),
+        Panel::new("2-D less 3-D", ["distance (m)", "difference of y (µm)"], vec![less]),
+    ]];
     let [flat, full] = samples.map(|s| 1e3 * steady(s, y));
     let pairs = samples[0].iter().zip(samples[1]);
     Ok(Plate {
