@@ -9,6 +9,8 @@
 mod clock;
 mod uart;
 
+use core::mem::MaybeUninit;
+
 use cortex_m::{Peripherals, singleton};
 use cortex_m_rt::entry;
 use flangeway::{ContactTable, layout};
@@ -51,7 +53,8 @@ struct Firmware {
 
 fn start(peripherals: Peripherals) -> Option<Firmware> {
     // Checked once: checksum and every section. From here on nothing can fail.
-    let table: &'static ContactTable<'static> = singleton!(: ContactTable<'static> = ContactTable::new(TABLE).ok()?)?;
+    let place = singleton!(: MaybeUninit<ContactTable<'static>> = MaybeUninit::uninit())?;
+    let table = ContactTable::new_in(place, TABLE).ok()?;
     let identity = Identity {
         session: 0,
         table_checksum: layout::checksum(TABLE),
