@@ -118,7 +118,8 @@ fn pose(step: u32) -> Pose {
 fn report(mut uart: Uart) -> ! {
     let mut next = RATE;
     loop {
-        cortex_m::asm::wfi();
+        // Without work of its own it may sleep here, `cortex_m::asm::wfi()`. The emulator keeps exact time only when it does
+        // not: asleep, its clock follows the host's.
         if let Some(answer) = interrupt::free(|all| ANSWER.borrow(all).get())
             && answer.steps >= next
         {
