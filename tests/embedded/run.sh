@@ -112,10 +112,10 @@ for cpu in cortex-m7 cortex-m4; do
   fi
 
   # A second of the program that looks both wheels up in a timer's interrupt.
-  start $cpu "file:$work/steps.log" "$programs/fixed-step"
-  await '"steps": 1000,.*}' "$work/steps.log"
+  start $cpu "file:$work/$cpu.steps" "$programs/fixed-step"
+  await '"steps": 1000,.*}' "$work/$cpu.steps"
   stop
-  steps=$(head -n 1 "$work/steps.log")
+  steps=$(head -n 1 "$work/$cpu.steps")
   echo "fixed step, $cpu: $steps"
   [ "$(field late "$steps")" = 0 ] || fail "$cpu: steps began late"
   [[ "$(field hundredths "$steps")" =~ ^(99|100|101)$ ]] || fail "$cpu: a thousand steps took other than a second"

@@ -100,7 +100,7 @@ fn SysTick() {
         answer.normal_force = contacts.iter().flat_map(Contacts::iter).map(|contact| contact.normal_force).sum();
         answer.steps += 1;
         // A lamp shows that it runs: half a second on, half a second off.
-        register::write(LAMPS, answer.steps / (RATE / 2) & 1);
+        register::write(LAMPS, (answer.steps / (RATE / 2)) & 1);
         // The timer counts down from the step's beginning, and is pending again when that was missed.
         answer.ticks = answer.ticks.max(TICKS - 1 - SYST::get_current());
         answer.late += u32::from(SCB::is_pendst_pending());
