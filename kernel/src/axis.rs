@@ -117,6 +117,10 @@ pub fn bins_per_unit(first: f64, last: f64, bins: usize) -> f64 {
 }
 
 impl<'a> Axis<'a> {
+    /// None yet.
+    pub(crate) const EMPTY: Self =
+        Self { nodes: &[], map: &[], first: 0.0, last: 0.0, below_last: 0.0, bins_per_unit: 0.0, last_bin: 0.0 };
+
     /// An axis over little-endian nodes and `u16` bins.
     ///
     /// # Errors
@@ -142,7 +146,7 @@ impl<'a> Axis<'a> {
             let needed = nodes.get(index + 1).map_or(0.0, |next| 1.0 / (coordinate(next) - coordinate(at)));
             check_reciprocal(name, index, at, needed)?;
         }
-        let mut axis = Self { nodes, map, first: 0.0, last: 0.0, below_last: 0.0, bins_per_unit: 0.0, last_bin: 0.0 };
+        let mut axis = Self { nodes, map, ..Self::EMPTY };
         axis.first = axis.node(0);
         axis.last = axis.node(nodes.len() - 1);
         axis.below_last = axis.last.next_down();
@@ -267,6 +271,15 @@ pub(crate) struct AxisPair<'a> {
 }
 
 impl<'a> AxisPair<'a> {
+    /// None yet.
+    pub(crate) const EMPTY: Self = Self {
+        axes: [Axis::EMPTY; 2],
+        first: [0.0; 2],
+        below_last: [0.0; 2],
+        bins_per_unit: [0.0; 2],
+        last_bin: [0.0; 2],
+    };
+
     pub(crate) fn new(axes: [Axis<'a>; 2]) -> Self {
         Self {
             axes,

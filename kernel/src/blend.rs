@@ -72,20 +72,18 @@ pub(crate) struct LaneScales {
 
 impl LaneScales {
     /// Lanes without a scale keep their integers.
-    const NONE: Self = Self { offsets: [0.0; LANES], steps: [STEP; LANES] };
+    pub(crate) const NONE: Self = Self { offsets: [0.0; LANES], steps: [STEP; LANES] };
 
-    /// Scales of a record's integers.
-    pub(crate) fn new(scales: &Scales) -> Self {
-        let mut all = Self::NONE;
+    /// Scales of a record's integers, the other lanes left as they are.
+    pub(crate) fn fill(&mut self, scales: &Scales) {
         for (slot, scales) in Slot::ALL.into_iter().zip(scales) {
             for (channel, scale) in Channel::ALL.into_iter().zip(scales) {
                 let lane = channel.lane(slot);
-                if let (Some(offset), Some(step)) = (all.offsets.get_mut(lane), all.steps.get_mut(lane)) {
+                if let (Some(offset), Some(step)) = (self.offsets.get_mut(lane), self.steps.get_mut(lane)) {
                     (*offset, *step) = (scale.offset, scale.step * STEP);
                 }
             }
         }
-        all
     }
 }
 

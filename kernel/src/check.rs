@@ -53,13 +53,9 @@ fn word(image: &[u8], at: Range<usize>) -> Option<[u8; 4]> {
     image.get(at)?.first_chunk().copied()
 }
 
-/// Decodes the header and checks every number in it.
-pub(crate) fn header(bytes: &[u8]) -> Result<Header<'_>, TableError> {
-    let encoding = TableError::HeaderEncoding { offset: HEADER_AT };
-    let (header, rest) = postcard::take_from_bytes::<Header<'_>>(bytes).map_err(|_| encoding)?;
-    if !rest.is_empty() {
-        return Err(encoding);
-    }
+/// Decodes the header in place and checks every number in it.
+pub(crate) fn header<'a>(bytes: &'a [u8], header: &mut Header<'a>) -> Result<(), TableError> {
+    header.decode(bytes).ok_or(TableError::HeaderEncoding { offset: HEADER_AT })?;
     within("gauge", None, header.gauge, 0.1, 3.0)?;
     within("material.young_modulus", None, header.material.young_modulus, 1e6, 1e13)?;
     within("material.poisson_ratio", None, header.material.poisson_ratio, 0.0, 0.5)?;
@@ -84,7 +80,7 @@ pub(crate) fn header(bytes: &[u8]) -> Result<Header<'_>, TableError> {
     if let Some(left) = &header.left {
         side(left, Side::Left)?;
     }
-    Ok(header)
+    Ok(())
 }
 
 /// A number between two bounds; NaN is not.
@@ -121,9 +117,14 @@ fn side(header: &SideHeader<'_>, side: Side) -> Result<(), TableError> {
     Ok(())
 }
 
-/// The four axes.
-pub(crate) fn axes<'a>(image: &'a [u8], header: &Header<'_>, sections: &Sections) -> Result<[Axis<'a>; 4], TableError> {
-    let axis = |name: AxisName| {
+/// The four axes, in place.
+pub(crate) fn axes<'a>(
+    image: &'a [u8],
+    header: &Header<'_>,
+    sections: &Sections,
+    axes: &mut [Axis<'a>; 4],
+) -> Result<(), TableError> {
+    for (name, axis) in AxisName::ALL.into_iter().zip(axes) {
         let missing = TableError::Sections { needed: Some(sections.total), length: image.len() };
         let counts = header.axes.get(name.index()).copied().unwrap_or_default();
         if counts.nodes < 2 || counts.bins == 0 {
@@ -131,10 +132,9 @@ pub(crate) fn axes<'a>(image: &'a [u8], header: &Header<'_>, sections: &Sections
         }
         let nodes = sections.nodes.get(name.index()).ok_or(missing)?;
         let bins = sections.bins.get(name.index()).ok_or(missing)?;
-        Axis::new(name, chunks(image, nodes).as_chunks().0, chunks(image, bins))
-    };
-    let [a, b, c, d] = AxisName::ALL;
-    Ok([axis(a)?, axis(b)?, axis(c)?, axis(d)?])
+        *axis = Axis::new(name, chunks(image, nodes).as_chunks().0, chunks(image, bins))?;
+    }
+    Ok(())
 }
 
 /// A section as elements of `N` bytes.

@@ -123,6 +123,9 @@ pub(crate) struct Wheel {
 }
 
 impl Wheel {
+    /// None yet.
+    pub(crate) const EMPTY: Self = Self { radius: Four::ZERO, place: Four::ZERO };
+
     pub(crate) fn new(geometry: &WheelGeometry) -> Self {
         let all = |x: f64| Four::all(single(x));
         Self { radius: all(geometry.nominal_radius), place: all(geometry.lateral_position) }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::channel::Scales;
+use crate::channel::{CHANNELS, SLOTS, Scale, Scales};
 use crate::pose::{Side, WheelGeometry};
 
 /// Nodes and bins of an axis.
@@ -100,7 +100,85 @@ pub struct Header<'a> {
     pub left: Option<SideHeader<'a>>,
 }
 
+impl<'a> SideHeader<'a> {
+    /// To decode into.
+    pub(crate) const EMPTY: Self = Self {
+        wheel: "",
+        rail: "",
+        wheel_sha256: [0; 32],
+        rail_sha256: [0; 32],
+        geometry: WheelGeometry { nominal_radius: 0.0, lateral_position: 0.0 },
+        slot_boundaries: [0.0; 2],
+        scales: [[Scale { offset: 0.0, step: 0.0 }; CHANNELS]; SLOTS],
+    };
+
+    #[inline(never)]
+    fn decode(&mut self, rest: &mut &'a [u8]) -> Option<()> {
+        let Self { wheel, rail, wheel_sha256, rail_sha256, geometry, slot_boundaries, scales } = self;
+        take(wheel, rest)?;
+        take(rail, rest)?;
+        take(wheel_sha256, rest)?;
+        take(rail_sha256, rest)?;
+        take(geometry, rest)?;
+        take(slot_boundaries, rest)?;
+        scales.as_flattened_mut().iter_mut().try_for_each(|scale| take(scale, rest))
+    }
+}
+
+/// Decodes one part from the front of what is left.
+#[inline(never)]
+fn take<'a, T: Deserialize<'a>>(place: &mut T, rest: &mut &'a [u8]) -> Option<()> {
+    (*place, *rest) = postcard::take_from_bytes(rest).ok()?;
+    Some(())
+}
+
 impl<'a> Header<'a> {
+    /// To decode into.
+    pub(crate) const EMPTY: Self = Self {
+        generator: "",
+        solver: "",
+        recipe_sha256: [0; 32],
+        gauge: 0.0,
+        material: Material { young_modulus: 0.0, poisson_ratio: 0.0 },
+        axes: [AxisCounts { nodes: 0, bins: 0 }; 4],
+        refinement: [0; 3],
+        errors: ErrorFigures {
+            samples: 0,
+            seed: 0,
+            force_rms: 0.0,
+            force_median: 0.0,
+            force_p95: 0.0,
+            force_p99: 0.0,
+            force_max: 0.0,
+            continuity: 0.0,
+        },
+        right: SideHeader::EMPTY,
+        left: None,
+    };
+
+    /// Decodes a header in place, part by part, as [`Deserialize`] does as a whole: that would take a stack of several
+    /// times its size. None if it is none, or bytes are left.
+    #[inline(never)]
+    pub(crate) fn decode(&mut self, bytes: &'a [u8]) -> Option<()> {
+        let mut rest = bytes;
+        let Self { generator, solver, recipe_sha256, gauge, material, axes, refinement, errors, right, left } = self;
+        take(generator, &mut rest)?;
+        take(solver, &mut rest)?;
+        take(recipe_sha256, &mut rest)?;
+        take(gauge, &mut rest)?;
+        take(material, &mut rest)?;
+        take(axes, &mut rest)?;
+        take(refinement, &mut rest)?;
+        take(errors, &mut rest)?;
+        right.decode(&mut rest)?;
+        let mut another = false;
+        take(&mut another, &mut rest)?;
+        if another {
+            left.insert(SideHeader::EMPTY).decode(&mut rest)?;
+        }
+        rest.is_empty().then_some(())
+    }
+
     /// Number of sides with data of their own, 1 or 2.
     #[must_use]
     pub const fn sides(&self) -> usize {
@@ -113,6 +191,47 @@ impl<'a> Header<'a> {
         match (side, &self.left) {
             (Side::Left, Some(left)) => left,
             _ => &self.right,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of one side and of two, whole and cut off anywhere, the same as by serde.
+    #[test]
+    fn decoded_in_place_as_by_serde() {
+        let mut side = SideHeader { wheel: "S1002", rail: "60E1 1:40", rail_sha256: [7; 32], ..SideHeader::EMPTY };
+        side.geometry = WheelGeometry { nominal_radius: 0.46, lateral_position: 0.75 };
+        side.slot_boundaries = [0.01, -0.02];
+        for (i, scale) in (0_u8..).zip(side.scales.as_flattened_mut()) {
+            *scale = Scale { offset: f32::from(i), step: 1.0 + f32::from(i) };
+        }
+        let one = Header {
+            generator: "a program",
+            solver: "a solver",
+            recipe_sha256: [9; 32],
+            gauge: 1.435,
+            material: Material { young_modulus: 2.1e11, poisson_ratio: 0.28 },
+            axes: [AxisCounts { nodes: 300, bins: 4000 }; 4],
+            refinement: [4, 2, 1],
+            errors: ErrorFigures { samples: 4000, seed: 1 << 40, force_p95: 0.01, ..ErrorFigures::default() },
+            right: side,
+            left: None,
+        };
+        for header in [one, Header { left: Some(SideHeader { wheel: "worn", ..side }), ..one }] {
+            let mut bytes = [0; 2048];
+            let bytes = &*postcard::to_slice(&header, &mut bytes).unwrap();
+            for end in 0..=bytes.len() {
+                let part = &bytes[..end];
+                let mut decoded = Header::EMPTY;
+                let decoded = decoded.decode(part).map(|()| decoded);
+                assert_eq!(decoded, postcard::from_bytes(part).ok());
+                assert_eq!(decoded.is_some(), end == bytes.len());
+            }
+            let mut decoded = Header::EMPTY;
+            assert_eq!(decoded.decode(&[bytes, &[0]].concat()), None);
         }
     }
 }

@@ -22,6 +22,9 @@ pub(crate) struct Two([f64; 2]);
 pub(crate) struct Mask([bool; 2]);
 
 impl Four {
+    /// Four zeros.
+    pub(crate) const ZERO: Self = Self([0.0; 4]);
+
     #[inline(always)]
     pub(crate) fn load(numbers: &[f32; 4]) -> Self {
         Self(*numbers)
@@ -300,6 +303,7 @@ mod tests {
             }
         }
         assert_eq!(Four::load(&[1.0, 2.0, 3.0, 4.0]).numbers(), simd::Four::load(&[1.0, 2.0, 3.0, 4.0]).numbers());
+        assert_eq!(Four::ZERO.numbers(), simd::Four::ZERO.numbers());
         assert_eq!(Two::new([2.0; 2]).numbers(), Two::all(2.0).numbers());
     }
 }

@@ -110,6 +110,19 @@ struct InPlane {
 }
 
 impl<'a> RigidMaps<'a> {
+    /// None yet.
+    pub(crate) const EMPTY: Self = Self {
+        plane: AxisPair::EMPTY,
+        roll_offset: Axis::EMPTY,
+        plane_parts: Parts { counts: [0; 2], numbers: [0.0; 2], last: [0.0; 2] },
+        roll_parts: Parts { counts: [0; 2], numbers: [0.0; 2], last: [0.0; 2] },
+        row: 0,
+        slab: 0,
+        roll_row: 0,
+        roll: &[],
+        vertical: &[],
+    };
+
     /// Maps over little-endian `f32`: `roll[lateral][yaw]` in rad and `vertical[lateral][yaw][roll offset]` in m, over
     /// the axes lateral, yaw and roll offset with every interval divided evenly into parts. None if the lengths do not
     /// fit, or an interval has other than 1, 2, 4, 8 or 16 parts.

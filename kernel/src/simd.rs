@@ -27,6 +27,10 @@ pub(crate) struct Two(__m128d);
 // SAFETY of every block up to the end of this file: the instructions are SSE2's, and this module is compiled only where the
 // whole program may use SSE2. Only the load and the prefetch touch memory, see there.
 impl Four {
+    /// Four zeros.
+    // SAFETY: any sixteen bytes are four `f32`.
+    pub(crate) const ZERO: Self = Self(unsafe { core::mem::transmute::<[f32; 4], __m128>([0.0; 4]) });
+
     /// By one load, where the compiler would put overlapping ones together from parts.
     #[inline(always)]
     pub(crate) fn load(numbers: &[f32; 4]) -> Self {

@@ -2,6 +2,7 @@
 
 use core::fmt;
 use core::hint::black_box;
+use core::mem::MaybeUninit;
 
 use crate::axis::{Axis, AxisName, Place, Places};
 use crate::blend::{Cell, LaneScales, Lanes, edges};
@@ -12,7 +13,7 @@ use crate::displacement::{Attitude, Displacement, displacement};
 use crate::error::TableError;
 use crate::flags::Flags;
 use crate::header::{Header, SideHeader};
-use crate::layout::{RECORD, Sections};
+use crate::layout::{RECORD, Sections, SideSections};
 use crate::math::Two;
 use crate::pose::{Canonical, Pose, Side, WheelGeometry, checked};
 use crate::rigid::{Coordinates, RigidMaps};
@@ -61,6 +62,15 @@ struct Prepared {
 const TOGETHER: usize = 8;
 
 impl<'a> ContactTable<'a> {
+    /// To be filled; nobody else sees it.
+    const EMPTY: Self = Self {
+        header: Header::EMPTY,
+        axes: [Axis::EMPTY; 4],
+        strides: [0; 3],
+        right: SideData::EMPTY,
+        left: SideData::EMPTY,
+    };
+
     /// Checks an image and takes it as a table. The image is read through once (checksum and plausibility of every
     /// section), without allocation; it needs no alignment, but records straddle cache lines unless it lies on a
     /// multiple of 64 bytes.
@@ -70,36 +80,49 @@ impl<'a> ContactTable<'a> {
     #[cold]
     #[inline(never)]
     pub fn new(image: &'a [u8]) -> Result<Self, TableError> {
+        let mut table = Self::EMPTY;
+        table.fill(image)?;
+        Ok(table)
+    }
+
+    /// [`ContactTable::new`] in a place of the caller's, such as a static: a table has more than two kilobytes, which a
+    /// microcontroller's stack need not hold.
+    ///
+    /// # Errors
+    /// As [`ContactTable::new`].
+    #[cold]
+    #[inline(never)]
+    pub fn new_in<'p>(place: &'p mut MaybeUninit<Self>, image: &'a [u8]) -> Result<&'p Self, TableError> {
+        let table = place.write(Self::EMPTY);
+        table.fill(image)?;
+        Ok(table)
+    }
+
+    #[inline(never)]
+    fn fill(&mut self, image: &'a [u8]) -> Result<(), TableError> {
+        let Self { header, axes, strides, right, left } = self;
         let bytes = check::envelope(image)?;
-        let header = check::header(bytes)?;
+        check::header(bytes, header)?;
         let sections = Sections::new(bytes.len(), &header.axes, header.refinement, header.sides());
-        let sections = match sections {
-            Some(sections) if sections.total == image.len() => sections,
-            other => return Err(TableError::Sections { needed: other.map(|s| s.total), length: image.len() }),
-        };
+        let wrong = |needed| TableError::Sections { needed, length: image.len() };
+        let sections = sections.ok_or(wrong(None))?;
+        if sections.total != image.len() {
+            return Err(wrong(Some(sections.total)));
+        }
         check::padding(image, &sections)?;
-        let axes = check::axes(image, &header, &sections)?;
+        check::axes(image, header, &sections, axes)?;
         let [right_sections, left_sections] = &sections.sides;
-        let refinement = header.refinement;
-        let side = |header: &SideHeader<'_>, place: &crate::layout::SideSections| {
-            let [lateral, yaw, roll, _] = axes;
-            let roll_map = check::rigid_roll(image, &place.rigid_roll)?;
-            let vertical_map = check::rigid_vertical(image, &place.rigid_vertical)?;
-            let rigid = RigidMaps::new([lateral, yaw, roll], refinement, roll_map, vertical_map)
-                .ok_or(TableError::Sections { needed: Some(sections.total), length: image.len() })?;
-            let records = check::records(image, &place.records)?;
-            Ok(SideData::new(header, rigid, records))
-        };
-        let right = side(&header.right, right_sections)?;
-        let left = match &header.left {
-            Some(left) => side(left, left_sections)?,
-            None => right.clone(),
-        };
-        let [_, yaw, roll, vertical] = &axes;
-        let strides = [yaw.len() * roll.len() * vertical.len(), roll.len() * vertical.len(), vertical.len()];
+        let [lateral, yaw, roll, vertical] = &*axes;
+        let plane = [lateral, yaw, roll];
+        right.fill(image, &header.right, right_sections, plane, header.refinement)?;
+        match &header.left {
+            Some(side) => left.fill(image, side, left_sections, plane, header.refinement)?,
+            None => left.clone_from(right),
+        }
+        let records = [yaw.len() * roll.len() * vertical.len(), roll.len() * vertical.len(), vertical.len()];
         // Sections are below 4 GiB, so strides of records fit.
-        let strides = strides.map(|stride| u32::try_from(stride).unwrap_or_default());
-        Ok(Self { header, axes, strides, right, left })
+        *strides = records.map(|stride| u32::try_from(stride).unwrap_or_default());
+        Ok(())
     }
 
     /// The header.
@@ -278,9 +301,36 @@ impl fmt::Debug for ContactTable<'_> {
 }
 
 impl<'a> SideData<'a> {
-    fn new(header: &SideHeader<'_>, rigid: RigidMaps<'a>, records: &'a [[u8; RECORD]]) -> Self {
-        let scales = LaneScales::new(&header.scales);
-        Self { geometry: header.geometry, wheel: Wheel::new(&header.geometry), rigid, records, scales }
+    /// To be filled.
+    const EMPTY: Self = Self {
+        geometry: SideHeader::EMPTY.geometry,
+        wheel: Wheel::EMPTY,
+        rigid: RigidMaps::EMPTY,
+        records: &[],
+        scales: LaneScales::NONE,
+    };
+
+    /// Checks a side's sections and fills the data in place.
+    #[inline(never)]
+    fn fill(
+        &mut self,
+        image: &'a [u8],
+        header: &SideHeader<'_>,
+        place: &SideSections,
+        axes: [&Axis<'a>; 3],
+        refinement: [u8; 3],
+    ) -> Result<(), TableError> {
+        let roll = check::rigid_roll(image, &place.rigid_roll)?;
+        let vertical = check::rigid_vertical(image, &place.rigid_vertical)?;
+        let rigid = RigidMaps::new(axes.map(|axis| *axis), refinement, roll, vertical);
+        // The sections were laid out for them, and end with the image.
+        let length = image.len();
+        self.rigid = rigid.ok_or(TableError::Sections { needed: Some(length), length })?;
+        self.records = check::records(image, &place.records)?;
+        self.geometry = header.geometry;
+        self.wheel = Wheel::new(&header.geometry);
+        self.scales.fill(&header.scales);
+        Ok(())
     }
 
     /// Blended lanes in their units, by the vector instructions of the build's target. All give the same bits.

@@ -8,8 +8,11 @@ cd "$here"
 export CARGO_TERM_COLOR=never
 targets="$here/target"
 triple=thumbv7em-none-eabihf
-# What must hold on the Cortex-M7: instructions a lookup, bytes of flash without the table, bytes of stack of a lookup.
+# What must hold on the Cortex-M7: instructions a lookup, bytes of flash without the table; bytes of stack of a lookup and of
+# the startup, on both.
 most_instructions=3000 most_flash=24576 most_stack=2048
+# Instructions that an emulated tick of the boards' timer takes.
+tick=40
 exchanges=10000 damage=0.01
 machine() { [ "$1" = cortex-m7 ] && echo mps2-an500 || echo mps2-an386; }
 
@@ -62,6 +65,23 @@ flash() { echo $(($(bytes "$1" 'vector_table|text|rodata|data') - table)); }
 # field NAME LINE: a number of a line of JSON.
 field() { sed -nE "s/.*\"$1\": ([0-9]+).*/\1/p" <<<"$2"; }
 
+# start CPU SERIAL PROGRAM: a board with its serial line there.
+start() {
+  qemu-system-arm -cpu "$1" -machine "$(machine "$1")" -display none -monitor none -icount shift=0 -serial "$2" \
+    -kernel "$3" >"$work/board.log" 2>&1 &
+  board=$!
+}
+stop() { kill "$board" && { wait "$board" || true; board=; }; }
+# await PATTERN FILE: waits until a line says so, for a minute.
+await() {
+  local i
+  for ((i = 0; i < 600; i++)); do
+    if grep -qE "$1" "$2" 2>/dev/null; then return 0; fi
+    sleep 0.1
+  done
+  fail "no \"$1\" within a minute: $(cat "$2")"
+}
+
 CARGO_TARGET_DIR="$here/target/host" cargo build --quiet --release --locked -p flangeway-compare
 compare="$here/target/host/release/compare"
 "$compare" poses "$work/poses.bin"
@@ -79,13 +99,32 @@ for cpu in cortex-m7 cortex-m4; do
   [ "$(field poses "$line")" -ge 1000 ] || fail "$cpu: fewer than 1000 poses"
   [ "$(field thousand_nops "$line")" = 1000 ] || fail "$cpu: a thousand instructions are counted as others"
   ! grep -qE '"poses_by_contacts": \[.*\b[0-9]\b.*\]' <<<"$line" || fail "$cpu: a number of contacts is rare among the poses"
-  [ "$(field stack_bytes "$line")" -lt $most_stack ] || fail "$cpu: a lookup takes $most_stack bytes of stack or more"
+  for stack in stack_bytes startup_stack_bytes; do
+    [ "$(field $stack "$line")" -lt $most_stack ] || fail "$cpu: $stack is $most_stack or more"
+  done
   if [ $cpu = cortex-m7 ]; then
-    [ "$(field instructions_min "$line")" = "$(field instructions_max "$line")" ] || fail "$cpu: not the same for every pose"
+    for call in "" creep_ fastsim_; do
+      [ "$(field ${call}instructions_min "$line")" = "$(field ${call}instructions_max "$line")" ] ||
+        fail "$cpu: ${call}instructions are not the same for every case"
+    done
     [ "$(field instructions_max "$line")" -le $most_instructions ] || fail "$cpu: more than $most_instructions instructions"
     [ "$(field flash_bytes "$line")" -lt $most_flash ] || fail "$cpu: $most_flash bytes of flash or more"
   fi
-  if nm "$programs/template" | grep -E '__rust_alloc|__rg_alloc'; then fail "$cpu: an allocator is linked"; fi
+
+  # A second of the program that looks both wheels up in a timer's interrupt.
+  start $cpu "file:$work/$cpu.steps" "$programs/fixed-step"
+  await '"steps": 1000,.*}' "$work/$cpu.steps"
+  stop
+  steps=$(head -n 1 "$work/$cpu.steps")
+  echo "fixed step, $cpu: $steps"
+  [ "$(field late "$steps")" = 0 ] || fail "$cpu: steps began late"
+  [[ "$(field hundredths "$steps")" =~ ^10[0-5]$ ]] || fail "$cpu: a thousand steps after the start took other than a second"
+  [ "$(field normal_force "$steps")" -gt 0 ] || fail "$cpu: no contact in the timer's interrupt"
+  if [ $cpu = cortex-m7 ]; then
+    # Two lookups and as much again for all else.
+    [ $(($(field ticks_max "$steps") * tick)) -le $((4 * most_instructions)) ] || fail "$cpu: the interrupt takes too long"
+  fi
+  if nm "$programs/template" "$programs/fixed-step" | grep -E '__rust_alloc|__rg_alloc'; then fail "$cpu: an allocator is linked"; fi
 done
 
 # The template with log messages builds too.
@@ -97,28 +136,11 @@ template="$targets/cortex-m7/$triple/release/template"
 cargo build --quiet --release --locked --manifest-path "$root/Cargo.toml" --bin flangeway
 flangeway="${CARGO_TARGET_DIR:-$root/target}/release/flangeway"
 
-# start SERIAL: a board with its serial line there.
-start() {
-  qemu-system-arm -cpu cortex-m7 -machine mps2-an500 -display none -monitor none -icount shift=0 -serial "$1" \
-    -kernel "$template" >"$work/board.log" 2>&1 &
-  board=$!
-}
-stop() { kill "$board" && { wait "$board" || true; board=; }; }
-# await PATTERN FILE: waits until a line says so, for a minute.
-await() {
-  local i
-  for ((i = 0; i < 600; i++)); do
-    if grep -qE "$1" "$2" 2>/dev/null; then return 0; fi
-    sleep 0.1
-  done
-  fail "no \"$1\" within a minute: $(cat "$2")"
-}
-
 # A port that nobody listens at.
 port=0
 while [ $port = 0 ] || (: <"/dev/tcp/127.0.0.1/$port") 2>/dev/null; do port=$((20000 + RANDOM % 10000)); done
 line="tcp:127.0.0.1:$port,server=on,wait=off,nodelay=on"
-start "$line"
+start cortex-m7 "$line" "$template"
 for ((i = 0; i < 100; i++)); do
   if (: <"/dev/tcp/127.0.0.1/$port") 2>/dev/null; then break; fi
   sleep 0.1
@@ -128,7 +150,7 @@ done
 host=$!
 await "$((exchanges / 2)) of" "$work/pil.log"
 stop
-start "$line"
+start cortex-m7 "$line" "$template"
 wait $host || { cat "$work/pil.log"; fail "pil: it ended with another status than 0"; }
 stop
 cat "$work/pil.json"
@@ -139,7 +161,7 @@ pil=$(tr -d '\n' <"$work/pil.json")
 [ "$(field count_min "$pil")" -gt 0 ] || fail "pil: nothing was counted"
 
 # The same over a serial device, here a pseudo-terminal.
-start pty
+start cortex-m7 pty "$template"
 await 'redirected to /dev/' "$work/board.log"
 device=$(sed -nE 's/.*redirected to ([^ ]+).*/\1/p' "$work/board.log")
 "$flangeway" pil --port "$device:115200" --exchanges 200 --damage $damage 2>"$work/pil.log" || { cat "$work/pil.log"; fail "pil: the serial device"; }

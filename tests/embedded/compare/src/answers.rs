@@ -1,27 +1,53 @@
 //! The firmware's answers against the host's.
 
-use flangeway::SLOTS;
+use flangeway::{ContactTable, SLOTS};
 use flangeway_pil::{ContactNumbers, WheelAnswer};
 
-use crate::poses::{poses, tables};
+use crate::creep::{LAWS, NUMBERS};
+use crate::poses::{Case, poses, tables};
 
 /// Bytes of a contact: slot, twelve `f32`.
 const CONTACT: usize = 1 + 12 * 4;
-/// Bytes of an answer: instructions, flags, number of contacts, three contacts, those that are none zero.
-const ANSWER: usize = 4 + 1 + 1 + SLOTS * CONTACT;
+/// Bytes of a lookup's answer: instructions, flags, number of contacts, three contacts, those that are none zero.
+const LOOKUP: usize = 4 + 1 + 1 + SLOTS * CONTACT;
+/// Bytes of a law's answer for a contact: instructions, numbers.
+const LAW: usize = 4 + NUMBERS;
+/// Bytes of an answer: the lookup's, then those of the laws for three contacts.
+const ANSWER: usize = LOOKUP + SLOTS * LAWS.len() * LAW;
 /// Bytes at the end: three numbers.
 const END: usize = 3 * 4;
+
+/// Fewest and most instructions of a call.
+#[derive(Clone, Copy)]
+pub(crate) struct Instructions {
+    least: u32,
+    most: u32,
+}
+
+impl Instructions {
+    const NONE: Self = Self { least: u32::MAX, most: 0 };
+
+    fn add(&mut self, instructions: u32) {
+        *self = Self { least: self.least.min(instructions), most: self.most.max(instructions) };
+    }
+
+    /// Fields of a line of JSON.
+    pub(crate) fn fields(self, prefix: &str) -> String {
+        let Self { least, most } = self;
+        format!("\"{prefix}instructions_min\": {least}, \"{prefix}instructions_max\": {most}")
+    }
+}
 
 /// What came of a run.
 pub(crate) struct Report {
     /// Poses looked up.
     pub(crate) poses: usize,
-    /// Answers that are not the host's.
+    /// Poses with an answer that is not the host's.
     pub(crate) mismatches: usize,
-    /// Fewest instructions of a lookup.
-    pub(crate) least: u32,
-    /// Most instructions of a lookup.
-    pub(crate) most: u32,
+    /// Of a lookup.
+    pub(crate) lookup: Instructions,
+    /// Of a contact's creepages, forces and wrench, by law.
+    pub(crate) laws: [Instructions; LAWS.len()],
     /// Instructions counted for a thousand that do nothing.
     pub(crate) thousand: u32,
     /// Stack of a lookup, bytes.
@@ -45,32 +71,48 @@ impl Report {
         let mut report = Self {
             poses: cases.len(),
             mismatches: 0,
-            least: u32::MAX,
-            most: 0,
+            lookup: Instructions::NONE,
+            laws: [Instructions::NONE; LAWS.len()],
             thousand,
             stack,
             check_stack,
             contacts: [0; SLOTS + 1],
         };
         for (case, bytes) in cases.iter().zip(answers.as_chunks::<ANSWER>().0) {
-            let here = WheelAnswer::from(&tables[case.table].contacts(case.side, &case.pose));
-            let (instructions, there) = read(bytes);
-            report.contacts[here.contacts.len()] += 1;
-            report.least = report.least.min(instructions);
-            report.most = report.most.max(instructions);
-            if !there.is_some_and(|there| there.same_bits(&here)) {
+            if !report.add(case, &tables[case.table], bytes) {
                 report.mismatches += 1;
                 if report.mismatches == 1 {
-                    eprintln!("compare: {case:?}: {here:?} here, other bits there");
+                    eprintln!("compare: {case:?}: other bits there than here");
                 }
             }
         }
         Ok(report)
     }
+
+    /// Counts an answer; whether it is the host's.
+    fn add(&mut self, case: &Case, table: &ContactTable<'_>, bytes: &[u8; ANSWER]) -> bool {
+        let here = table.contacts(case.side, &case.pose);
+        self.contacts[here.list.len()] += 1;
+        let (lookup, laws) = bytes.split_first_chunk().expect("longer");
+        let (instructions, there) = read(lookup);
+        self.lookup.add(instructions);
+        let mut same = there.is_some_and(|there| there.same_bits(&WheelAnswer::from(&here)));
+        let header = table.header();
+        let (geometry, elasticity) = (&header.side(case.side).geometry, (&header.material).into());
+        let answers = laws.as_chunks::<LAW>().0.as_chunks::<{ LAWS.len() }>().0;
+        for (contact, answers) in here.iter().zip(answers) {
+            for ((law, bytes), counted) in LAWS.into_iter().zip(answers).zip(&mut self.laws) {
+                let (instructions, numbers) = bytes.split_first_chunk().expect("longer");
+                counted.add(u32::from_le_bytes(*instructions));
+                same &= case.creep.numbers(geometry, &elasticity, contact, law) == numbers;
+            }
+        }
+        same
+    }
 }
 
 /// Instructions and contacts; no contacts if there cannot be as many.
-fn read(bytes: &[u8; ANSWER]) -> (u32, Option<WheelAnswer>) {
+fn read(bytes: &[u8; LOOKUP]) -> (u32, Option<WheelAnswer>) {
     let ([a, b, c, d, flags, count], contacts) = bytes.split_first_chunk().expect("longer");
     let contacts = contacts.as_chunks::<CONTACT>().0.get(..usize::from(*count));
     let contact = |bytes: &[u8; CONTACT]| {

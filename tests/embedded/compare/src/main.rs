@@ -2,6 +2,7 @@
 //! against the host's, bit for bit, and prints a line of JSON. SIZES are fields of it that `run.sh` measures.
 
 mod answers;
+mod creep;
 mod poses;
 
 use std::process::ExitCode;
@@ -30,11 +31,14 @@ fn main() -> ExitCode {
 fn check(target: &str, file: &str, sizes: &str) -> Result<bool, String> {
     let bytes = std::fs::read(file).map_err(|e| format!("{file}: {e}"))?;
     let report = Report::of(&bytes).map_err(|e| format!("{file}: {e}"))?;
-    let Report { poses, mismatches, least, most, thousand, stack, check_stack, contacts } = report;
+    let Report { poses, mismatches, lookup, laws, thousand, stack, check_stack, contacts } = report;
+    let [creep, fastsim] = laws;
     println!(
-        "{{\"target\": \"{target}\", \"poses\": {poses}, \"mismatches\": {mismatches}, \"instructions_min\": {least}, \
-         \"instructions_max\": {most}, \"stack_bytes\": {stack}, {sizes}, \"table_check_stack_bytes\": {check_stack}, \
-         \"thousand_nops\": {thousand}, \"poses_by_contacts\": {contacts:?}}}"
+        "{{\"target\": \"{target}\", \"poses\": {poses}, \"mismatches\": {mismatches}, {}, {}, {}, \"stack_bytes\": {stack}, \
+         \"startup_stack_bytes\": {check_stack}, {sizes}, \"thousand_nops\": {thousand}, \"poses_by_contacts\": {contacts:?}}}",
+        lookup.fields(""),
+        creep.fields("creep_"),
+        fastsim.fields("fastsim_")
     );
     Ok(mismatches == 0)
 }

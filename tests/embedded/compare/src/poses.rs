@@ -4,6 +4,8 @@ use flangeway::{AxisName, ContactTable, Coordinates, Pose, Side};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
+use crate::creep::CreepCase;
+
 /// A made-up table in which all three slots can carry force; `tests/kernel_gates.rs` writes it.
 static THREE: &[u8] = include_bytes!("../../../gates/three_contacts.fwt");
 
@@ -22,6 +24,8 @@ pub(crate) struct Case {
     pub(crate) side: Side,
     /// The wheelset's pose.
     pub(crate) pose: Pose,
+    /// What its contacts' creep forces depend on.
+    pub(crate) creep: CreepCase,
 }
 
 /// Kinds of poses.
@@ -46,12 +50,16 @@ pub(crate) fn tables() -> [ContactTable<'static>; 2] {
 
 /// The poses, always the same.
 pub(crate) fn poses() -> Vec<Case> {
-    let mut random = Pcg64::seed_from_u64(1);
+    let (mut random, mut motions) = (Pcg64::seed_from_u64(1), Pcg64::seed_from_u64(2));
     let mut cases = Vec::new();
     for (index, table) in tables().iter().enumerate() {
         for kind in [Kind::Interior, Kind::Edges, Kind::Clamped, Kind::Strange, Kind::Deep] {
             for i in 0..OF_A_KIND {
-                cases.push(Case { table: index, side: Side::ALL[i % 2], pose: pose(table, kind, i, &mut random) });
+                let (side, pose) = (Side::ALL[i % 2], pose(table, kind, i, &mut random));
+                let geometry = &table.header().side(side).geometry;
+                // Another motion than the pose's for both sides and both signs of yaw.
+                let creep = CreepCase::new(pose, geometry, cases.len() / 4 + i, &mut motions);
+                cases.push(Case { table: index, side, pose, creep });
             }
         }
     }
@@ -91,13 +99,13 @@ fn pose(table: &ContactTable<'_>, kind: Kind, index: usize, random: &mut Pcg64) 
     pose
 }
 
-/// The poses as the firmware reads them: table, side, four `f64`.
+/// The poses as the firmware reads them: table, side, four `f64`, what their creep forces depend on.
 pub(crate) fn bytes() -> Vec<u8> {
     let case = |case: &Case| {
         let Pose { lateral, yaw, vertical, roll } = case.pose;
         let side = Side::ALL.iter().position(|side| *side == case.side).expect("one of two");
         let numbers = [lateral, yaw, vertical, roll].map(f64::to_le_bytes);
-        [[case.table as u8, side as u8].as_slice(), numbers.as_flattened()].concat()
+        [[case.table as u8, side as u8].as_slice(), numbers.as_flattened(), &case.creep.bytes()].concat()
     };
     poses().iter().flat_map(case).collect()
 }

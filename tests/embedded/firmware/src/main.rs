@@ -1,16 +1,21 @@
-//! Looks up the poses of a file and writes every answer with the instructions it took. `compare` writes the file, and
+//! Looks up the poses of a file, computes the creep forces of their contacts, and writes every answer with the instructions it took. `compare` writes the file, and
 //! holds the answers against the host's.
 #![no_std]
 #![no_main]
 
 mod counter;
+mod creep;
 mod semihosting;
 mod stack;
 
 use core::hint::black_box;
+use core::mem::MaybeUninit;
 
+use cortex_m::singleton;
 use cortex_m_rt::entry;
 use cortex_m_semihosting::debug;
+use flangeway::creep::Creepages;
+use flangeway::wheelset::{Motion, Rates};
 use flangeway::{ContactTable, Contacts, Pose, SLOTS, Side};
 use flangeway_mps2 as _;
 use flangeway_pil::ContactNumbers;
@@ -21,12 +26,20 @@ use semihosting::{File, Output};
 /// A made-up table in which all three slots can carry force; `tests/kernel_gates.rs` writes it.
 static THREE: &[u8] = include_bytes!("../../../gates/three_contacts.fwt");
 
-/// Bytes of a pose in the file: table, side, four `f64`.
-const POSE: usize = 2 + 4 * 8;
+/// Bytes of a case in the file: table, side, the pose's four `f64`, what its creep forces depend on.
+const CASE: usize = 2 + 4 * 8 + creep::CASE;
 /// Bytes of a contact: slot, twelve `f32`.
 const CONTACT: usize = 1 + 12 * 4;
-/// Bytes of an answer: instructions, flags, number of contacts, three contacts, those that are none zero.
+/// Bytes of a lookup's answer: instructions, flags, number of contacts, three contacts, those that are none zero.
 const ANSWER: usize = 4 + 1 + 1 + SLOTS * CONTACT;
+
+/// A case of the file.
+struct Case<'a> {
+    table: &'a ContactTable<'static>,
+    side: Side,
+    /// With the pose to look up.
+    creep: creep::Case,
+}
 
 /// What is counted: a lookup, or nothing at all.
 type Call = fn(&ContactTable<'_>, Side, &Pose, &mut Contacts);
@@ -59,25 +72,32 @@ fn main() -> ! {
 /// Everything; none where something is missing.
 fn run() -> Option<()> {
     let counter = Counter::start(cortex_m::Peripherals::take()?.SYST);
+    let first = singleton!(: MaybeUninit<ContactTable<'static>> = MaybeUninit::uninit())?;
+    let second = singleton!(: MaybeUninit<ContactTable<'static>> = MaybeUninit::uninit())?;
     let mut table = None;
-    let check_stack = stack::used_by(|| table = ContactTable::new(flangeway_tables::S1002_60E1_40_TABLE).ok());
-    let tables = [table?, ContactTable::new(THREE).ok()?];
+    let startup_stack =
+        stack::used_by(|| table = ContactTable::new_in(first, flangeway_tables::S1002_60E1_40_TABLE).ok());
+    let tables = [table?, ContactTable::new_in(second, THREE).ok()?];
     let (poses, mut answers) = (File::open("poses.bin\0")?, Output::open()?);
-    let mut pose = [0; POSE];
+    let mut bytes = [0; CASE];
     let mut lookup_stack = 0;
     let [table, _] = &tables;
     let mut contacts = Contacts::NONE;
     let mut without_lookup = |call| ticks(&counter, call, table, Side::Right, &Pose::default(), &mut contacts);
     let (floor, calibration) = (without_lookup(nothing), without_lookup(thousand));
-    while poses.read(&mut pose) {
-        let (table, side, pose) = parse(&pose, &tables)?;
+    while poses.read(&mut bytes) {
+        let Case { table, side, creep } = parse(&bytes, &tables)?;
+        let pose = &creep.motion.pose;
         let mut contacts = Contacts::NONE;
-        lookup_stack = lookup_stack.max(stack::used_by(|| lookup(table, side, &pose, &mut contacts)));
-        let ticks = ticks(&counter, lookup, table, side, &pose, &mut contacts);
+        lookup_stack = lookup_stack.max(stack::used_by(|| lookup(table, side, pose, &mut contacts)));
+        let ticks = ticks(&counter, lookup, table, side, pose, &mut contacts);
         answers.write(&answer(counter::instructions(ticks - floor), &contacts))?;
+        let mut forces = [0; creep::ANSWER];
+        creep::answer(&counter, &creep, contacts.iter(), &mut forces);
+        answers.write(&forces)?;
     }
-    // What was seen besides: nops counted, stack of a lookup, of the tables' check.
-    for number in [counter::instructions(calibration - floor), lookup_stack, check_stack] {
+    // What was seen besides: nops counted, stack of a lookup, of the startup with the check of a table.
+    for number in [counter::instructions(calibration - floor), lookup_stack, startup_stack] {
         answers.write(&number.to_le_bytes())?;
     }
     Some(())
@@ -97,18 +117,30 @@ fn ticks(
     counter.ticks(|| call(table, side, pose, contacts))
 }
 
-/// Table, side and pose from their bytes.
-fn parse<'a>(
-    bytes: &[u8; POSE],
-    tables: &'a [ContactTable<'static>; 2],
-) -> Option<(&'a ContactTable<'static>, Side, Pose)> {
-    let ([table, side], numbers) = bytes.split_first_chunk()?;
-    let number = |i: usize| numbers.as_chunks().0.get(i).copied().map(f64::from_le_bytes);
-    let pose = Pose { lateral: number(0)?, yaw: number(1)?, vertical: number(2)?, roll: number(3)? };
-    Some((tables.get(usize::from(*table))?, *Side::ALL.get(usize::from(*side))?, pose))
+/// A case from its bytes.
+fn parse<'a>(bytes: &[u8; CASE], tables: &[&'a ContactTable<'static>; 2]) -> Option<Case<'a>> {
+    let ([table, side], rest) = bytes.split_first_chunk()?;
+    let (doubles, singles) = rest.split_first_chunk::<{ 11 * 8 }>()?;
+    let [lateral, yaw, vertical, roll, rates @ .., speed, spin, track_curvature] =
+        doubles.as_chunks().0.first_chunk::<11>()?.map(f64::from_le_bytes);
+    let [longitudinal, lateral_creepage, spin_creepage, friction] =
+        singles.as_chunks().0.first_chunk::<4>()?.map(f32::from_le_bytes);
+    let pose = Pose { lateral, yaw, vertical, roll };
+    let [lateral, yaw, vertical, roll] = rates;
+    let rates = Rates { lateral, yaw, vertical, roll };
+    let (table, side) = (tables.get(usize::from(*table))?, *Side::ALL.get(usize::from(*side))?);
+    let header = table.header();
+    let creep = creep::Case {
+        geometry: header.side(side).geometry,
+        elasticity: (&header.material).into(),
+        motion: Motion { pose, rates, speed, spin, track_curvature },
+        added: Creepages { longitudinal, lateral: lateral_creepage, spin: spin_creepage },
+        friction,
+    };
+    Some(Case { table, side, creep })
 }
 
-/// An answer in bytes.
+/// A lookup's answer in bytes.
 fn answer(instructions: u32, contacts: &Contacts) -> [u8; ANSWER] {
     let mut bytes = [0; ANSWER];
     if let Some((head, rest)) = bytes.split_first_chunk_mut() {

@@ -3,6 +3,7 @@
 #![no_main]
 
 use core::hint::black_box;
+use core::mem::MaybeUninit;
 
 use cortex_m::singleton;
 use cortex_m_rt::entry;
@@ -13,9 +14,9 @@ use panic_halt as _;
 #[entry]
 fn main() -> ! {
     let image = flangeway_tables::S1002_60E1_40_TABLE;
-    let table = singleton!(: Option<ContactTable<'static>> = ContactTable::new(image).ok());
+    let place = singleton!(: MaybeUninit<ContactTable<'static>> = MaybeUninit::uninit());
     let mut contacts = Contacts::NONE;
-    if let Some(Some(table)) = table {
+    if let Some(Ok(table)) = place.map(|place| ContactTable::new_in(place, image)) {
         loop {
             table.contacts_into(black_box(Side::Right), &black_box(Pose::default()), black_box(&mut contacts));
         }

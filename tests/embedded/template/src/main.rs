@@ -1,13 +1,18 @@
 //! Firmware to copy: a table in flash, poses in over a UART, contacts out. It speaks the protocol of `flangeway pil`
 //! (`kernel/pil/PROTOCOL.md`), so the host can drive it and check every bit.
 //!
-//! What to change for your board: the crate `flangeway-mps2` (the memory's layout and the interrupts: a peripheral access crate and
-//! your `memory.x`), `uart.rs`, `clock.rs`, the table, the name.
+//! What to change for your board: the crate `flangeway-mps2` (the memory's layout and the interrupts: a peripheral access
+//! crate and your `memory.x`), `register.rs`, `uart.rs`, `receiver.rs`, `clock.rs`, the table, the name. A loop with a fixed
+//! step of its own is `fixed_step.rs`.
 #![no_std]
 #![no_main]
 
 mod clock;
+mod receiver;
+mod register;
 mod uart;
+
+use core::mem::MaybeUninit;
 
 use cortex_m::{Peripherals, singleton};
 use cortex_m_rt::entry;
@@ -20,6 +25,7 @@ use panic_halt as _;
 use defmt_semihosting as _;
 
 use clock::Clock;
+use receiver::Receiver;
 use uart::Uart;
 
 /// The table, which stays in flash. Your own: `include_bytes!("your.fwt")`, best aligned to 64 bytes.
@@ -46,12 +52,14 @@ struct Firmware {
     table: &'static ContactTable<'static>,
     board: &'static mut Board<'static>,
     uart: Uart,
+    receiver: Receiver,
     clock: Clock,
 }
 
 fn start(peripherals: Peripherals) -> Option<Firmware> {
     // Checked once: checksum and every section. From here on nothing can fail.
-    let table: &'static ContactTable<'static> = singleton!(: ContactTable<'static> = ContactTable::new(TABLE).ok()?)?;
+    let place = singleton!(: MaybeUninit<ContactTable<'static>> = MaybeUninit::uninit())?;
+    let table = ContactTable::new_in(place, TABLE).ok()?;
     let identity = Identity {
         session: 0,
         table_checksum: layout::checksum(TABLE),
@@ -62,16 +70,17 @@ fn start(peripherals: Peripherals) -> Option<Firmware> {
     let board = singleton!(: Board<'static> = Board::new(identity))?;
     #[cfg(feature = "defmt")]
     defmt::info!("a table of {} bytes", TABLE.len());
-    Some(Firmware { table, board, uart: Uart::start(), clock: Clock::start(peripherals.SYST) })
+    let uart = Uart::start();
+    let receiver = Receiver::start(&uart);
+    Some(Firmware { table, board, uart, receiver, clock: Clock::start(peripherals.SYST) })
 }
 
-/// Answers for ever. In a loop of your own with a fixed step, a timer's interrupt takes the newest pose and calls
-/// `table.contacts_into(side, &pose, &mut contacts)`: every call takes the same number of instructions.
+/// Answers for ever.
 fn serve(firmware: Firmware) -> ! {
-    let Firmware { table, board, mut uart, mut clock } = firmware;
+    let Firmware { table, board, mut uart, mut receiver, mut clock } = firmware;
     loop {
         // A board that does anything else receives in an interrupt, or by DMA.
-        let byte = uart.receive();
+        let byte = receiver.receive();
         let look_up = |step: &Step| {
             clock.restart();
             answer(table, step, || clock.now())
