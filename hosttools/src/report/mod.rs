@@ -2,6 +2,7 @@
 
 mod errors;
 mod heat;
+mod normal;
 mod page;
 mod positions;
 mod profiles;

@@ -31,6 +31,8 @@ const TICK_FONT: u32 = 14;
 pub(super) const INK: RGBColor = RGBColor(34, 34, 34);
 /// A second ink, for what is only for comparison.
 pub(super) const GREY: RGBColor = RGBColor(120, 120, 120);
+/// A third ink, for one more curve.
+pub(super) const ACCENT: RGBColor = RGBColor(204, 102, 0);
 /// Filling of the wheel and of the rail.
 pub(super) const WHEEL: RGBColor = RGBColor(228, 233, 240);
 pub(super) const RAIL: RGBColor = RGBColor(226, 226, 222);
