@@ -156,16 +156,16 @@ impl Strips<'_> {
                 }
             })
             .collect();
-        for i in 0..n {
+        for (here, q) in self.strips.iter().zip(q) {
             let (mut sum, mut total) = (0.0, 0.0);
-            for j in 0..n {
-                let away = (self.strips[i].row.rail.t - self.strips[j].row.rail.t) / SMOOTHING;
-                let weight = ratio[j][0] / (1.0 + away * away).powi(2);
-                sum += weight * ratio[j][1];
+            for (there, [force, ratio]) in self.strips.iter().zip(&ratio) {
+                let away = (here.row.rail.t - there.row.rail.t) / SMOOTHING;
+                let weight = force / (1.0 + away * away).powi(2);
+                sum += weight * ratio;
                 total += weight;
             }
             if total > 0.0 {
-                q[i] *= sum / total;
+                *q *= sum / total;
             }
         }
     }
