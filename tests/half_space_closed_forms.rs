@@ -19,7 +19,7 @@ impl Grid {
         let [columns, rows] = [0, 1].map(|k| (2.0 * reach[k] / edges[k]).ceil() as usize + 2);
         let at = |i: usize, count: usize, edge: f64| (i as f64 - 0.5 * count as f64 + 0.31) * edge;
         let place = |n: usize| (at(n % columns, columns, edges[0]), at(n / columns, rows, edges[1]));
-        let overlap = (0..columns * rows).map(|n| place(n)).map(|(x, y)| overlap(x, y)).collect();
+        let overlap = (0..columns * rows).map(place).map(|(x, y)| overlap(x, y)).collect();
         Self { columns, rows, edges, overlap }
     }
 

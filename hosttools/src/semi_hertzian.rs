@@ -40,34 +40,40 @@ struct Strip {
     zone: usize,
 }
 
-/// What the strips of all zones carry.
+/// What the strips of all zones carry. Zones too far apart to act on each other are solved on their own.
 pub fn loads(surface: &Surface<'_>, contact_modulus: f64) -> Vec<RowLoad> {
     let zones = surface.zones();
-    let mut strips = Vec::with_capacity(STRIPS * zones.len());
+    let links: Vec<f64> = zones.windows(2).map(|w| interaction(w[1].ends[0] - w[0].ends[1])).collect();
+    let mut strips: Vec<Strip> = Vec::with_capacity(STRIPS * zones.len());
+    let mut loads = Vec::with_capacity(STRIPS * zones.len());
     for (zone, place) in zones.iter().enumerate() {
         let [from, to] = place.ends;
         let width = (to - from) / STRIPS as f64;
         let row = |i: usize| surface.row(place, from + (i as f64 + 0.5) * width);
         let inside = (0..STRIPS).filter_map(row).filter(|row| row.overlap > 0.0 && row.half_curvature > 0.0);
         strips.extend(inside.map(|row| Strip { row, width, zone }));
+        if links.get(zone).is_some_and(|&link| link > 0.0) {
+            continue;
+        }
+        let group = Strips { strips: &strips, links: &links, scale: 1.0 / (PI * contact_modulus) };
+        let found = group.solve(contact_modulus);
+        let load = |(strip, [product, length]): (&Strip, [f64; 2])| RowLoad {
+            row: strip.row,
+            width: strip.width,
+            // ∫ p √(1 - x² / a²) dx = π p a / 2, its second moment a² / 4
+            force: FRAC_PI_2 * product * strip.width,
+            moments: [0.0, 0.25 * length * length],
+        };
+        loads.extend(strips.iter().zip(found).map(load).filter(|load| load.force > 0.0));
+        strips.clear();
     }
-    let links: Vec<f64> = zones.windows(2).map(|w| interaction(w[1].ends[0] - w[0].ends[1])).collect();
-    let felt = |i: usize, j: usize| links[i.min(j)..i.max(j)].iter().product::<f64>();
-    let found = Strips { strips: &strips, felt: &felt, scale: 1.0 / (PI * contact_modulus) }.solve(contact_modulus);
-    let load = |(strip, [product, length]): (&Strip, [f64; 2])| RowLoad {
-        row: strip.row,
-        width: strip.width,
-        // ∫ p √(1 - x² / a²) dx = π p a / 2, its second moment a² / 4
-        force: FRAC_PI_2 * product * strip.width,
-        moments: [0.0, 0.25 * length * length],
-    };
-    strips.iter().zip(found).map(load).filter(|load| load.force > 0.0).collect()
+    loads
 }
 
 struct Strips<'a> {
     strips: &'a [Strip],
-    /// How much two zones act on each other.
-    felt: &'a dyn Fn(usize, usize) -> f64,
+    /// How much each zone and the next act on each other.
+    links: &'a [f64],
     /// 1 / (π E*)
     scale: f64,
 }
@@ -105,7 +111,8 @@ impl Strips<'_> {
         let n = self.strips.len();
         for (i, here) in self.strips.iter().enumerate() {
             for (j, there) in self.strips.iter().enumerate() {
-                let felt = (self.felt)(here.zone, there.zone);
+                let [first, last] = [here.zone.min(there.zone), here.zone.max(there.zone)];
+                let felt: f64 = self.links[first..last].iter().product();
                 let distance = distance(&here.row, &there.row, lengths[j]);
                 let [outer, inner] = [0.5, -0.5].map(|half| (distance + half * there.width) / lengths[j]);
                 let ([g1, h1], [g0, h0]) = (table.at(outer), table.at(inner));
@@ -149,16 +156,16 @@ impl Strips<'_> {
                 }
             })
             .collect();
-        for i in 0..n {
+        for (here, q) in self.strips.iter().zip(q) {
             let (mut sum, mut total) = (0.0, 0.0);
-            for j in 0..n {
-                let away = (self.strips[i].row.rail.t - self.strips[j].row.rail.t) / SMOOTHING;
-                let weight = ratio[j][0] / (1.0 + away * away).powi(2);
-                sum += weight * ratio[j][1];
+            for (there, [force, ratio]) in self.strips.iter().zip(&ratio) {
+                let away = (here.row.rail.t - there.row.rail.t) / SMOOTHING;
+                let weight = force / (1.0 + away * away).powi(2);
+                sum += weight * ratio;
                 total += weight;
             }
             if total > 0.0 {
-                q[i] *= sum / total;
+                *q *= sum / total;
             }
         }
     }

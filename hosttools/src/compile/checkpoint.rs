@@ -167,3 +167,39 @@ fn decode(bytes: &[u8; SLOT_BYTES]) -> SlotState {
     quantise::set_values(&mut state, values);
     state
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_stands_before_damage_is_used() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("t.partial");
+        let axes = Axes::new(vec![0.0, 1.0], vec![0.0, 0.5], vec![-1.0, 1.0], vec![0.0, 2.0]);
+        let node =
+            |n: f64| [SlotState { indentation: n, stiffness: 2.0 * n, present: true, ..SlotState::ABSENT }; SLOTS];
+        let mut checkpoint = Checkpoint::open(&path, [7; KEY]).unwrap();
+        checkpoint.begin(&axes, Bound::Bytes).unwrap();
+        checkpoint.add(Side::Right, &[node(1.0), node(2.0)]).unwrap();
+        checkpoint.add(Side::Left, &[node(3.0), node(4.0)]).unwrap();
+        checkpoint.add(Side::Right, &[node(5.0), node(6.0)]).unwrap();
+        drop(checkpoint);
+        let whole = std::fs::read(&path).unwrap();
+        let nodes_of = |bytes: &[u8], key: [u8; KEY]| {
+            std::fs::write(&path, bytes).unwrap();
+            let checkpoint = Checkpoint::open(&path, key).unwrap();
+            let found = checkpoint.found().map(|(axes, bound)| (axes.lateral, axes.vertical, bound));
+            let expected = checkpoint.resumes().then(|| (vec![0.0, 1.0], vec![0.0, 2.0], Bound::Bytes));
+            assert_eq!(found, expected);
+            checkpoint.solved(Side::Right, 2)
+        };
+        assert_eq!(nodes_of(&whole, [7; KEY]), [node(1.0), node(2.0), node(5.0), node(6.0)]);
+        assert_eq!(nodes_of(&whole[..whole.len() - 1], [7; KEY]), [node(1.0), node(2.0)]);
+        let mut damaged = whole.clone();
+        damaged[whole.len() - 3] ^= 1;
+        assert_eq!(nodes_of(&damaged, [7; KEY]), [node(1.0), node(2.0)]);
+        assert!(nodes_of(&whole, [8; KEY]).is_empty());
+        assert!(nodes_of(&whole[..20], [7; KEY]).is_empty());
+    }
+}

@@ -43,6 +43,9 @@ pub const GENERATOR: &str = concat!("flangeway-host ", env!("CARGO_PKG_VERSION")
 const FIGURE_SAMPLES: usize = 4000;
 const FIGURE_LINES: usize = 200;
 const FIGURE_SEED: u64 = 1;
+/// The same for half-space tables, whose solver takes a hundred times as long.
+const HALF_SPACE_SAMPLES: usize = 1000;
+const HALF_SPACE_LINES: usize = 40;
 
 /// A finished table and what it took.
 #[derive(Debug, Clone)]
@@ -116,7 +119,11 @@ pub fn checkpoint_key(
 /// Measures a table and puts the figures into its image.
 fn finish(recipe: &Recipe, pair: &Pair, table: Assembled, bound: Bound) -> Result<Compiled> {
     let view = ContactTable::new(&table.image).map_err(|e| Error::field("", "table", e.to_string()))?;
-    let measured = verify::measure(&view, table.image.len(), pair, FIGURE_SAMPLES, FIGURE_LINES, FIGURE_SEED);
+    let (samples, lines) = match pair.body(Side::Right).settings().normal {
+        Normal::HalfSpace => (HALF_SPACE_SAMPLES, HALF_SPACE_LINES),
+        _ => (FIGURE_SAMPLES, FIGURE_LINES),
+    };
+    let measured = verify::measure(&view, table.image.len(), pair, samples, lines, FIGURE_SEED);
     let errors = measured.report.figures();
     let budget = budget::measure(&table, &view, &measured.samples);
     let image = image(recipe, pair, &table.axes, &table.sides, errors)?;

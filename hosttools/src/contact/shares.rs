@@ -13,12 +13,12 @@ pub(super) fn assign(body: &Body, slots: &mut [SlotState; SLOTS], loads: &[RowLo
     let deepest = (0..SLOTS).max_by(|&i, &j| slots[i].indentation.total_cmp(&slots[j].indentation)).unwrap_or(0);
     let mut sums = [Sums::default(); SLOTS];
     for load in loads {
-        for slot in 0..SLOTS {
+        for (slot, state) in slots.iter().enumerate() {
             let (below, above) = body.region(slot);
             let share = |limit: f64| (0.5 + (load.row.wheel.s - limit) / load.width).clamp(0.0, 1.0);
             let part = share(below) - share(above);
             if part > 0.0 {
-                let slot = if slots[slot].indentation > 0.0 { slot } else { deepest };
+                let slot = if state.indentation > 0.0 { slot } else { deepest };
                 sums[slot].add(load, part * load.force);
             }
         }

@@ -91,8 +91,8 @@ impl Convolution {
             let row = &influence[j * self.columns..][..self.columns];
             self.real.fill(0.0);
             self.real[..self.columns].copy_from_slice(row);
-            for i in 1..self.columns {
-                self.real[self.padded_columns - i] = row[i];
+            for (place, value) in self.real.iter_mut().rev().zip(&row[1..]) {
+                *place = *value;
             }
             self.forward_row(j);
             if j > 0 {

@@ -3,6 +3,7 @@
 pub mod campaign;
 mod errors;
 mod heat;
+mod normal;
 pub(crate) mod page;
 pub(crate) mod plot;
 mod positions;

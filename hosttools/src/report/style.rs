@@ -31,6 +31,8 @@ const TICK_FONT: u32 = 14;
 pub(crate) const INK: RGBColor = RGBColor(34, 34, 34);
 /// A second ink, for what is only for comparison.
 pub(crate) const GREY: RGBColor = RGBColor(120, 120, 120);
+/// A third ink, for one more curve.
+pub(crate) const ACCENT: RGBColor = RGBColor(204, 102, 0);
 /// Filling of the wheel and of the rail.
 pub(crate) const WHEEL: RGBColor = RGBColor(228, 233, 240);
 pub(crate) const RAIL: RGBColor = RGBColor(226, 226, 222);

@@ -74,7 +74,7 @@ fn figures(content: &Content<'_>) -> Result<Vec<Figure>> {
     };
     let map = "Colour: the 95 % quantile of the poses in each cell of the picture; white: no pose. Dots mark where the \
                rigid contact changes from one slot to the next.";
-    let figures = vec![
+    let mut figures = vec![
         done(Figure { title: "Map of the force error", svg: scatter::map(pair, table, samples)?, caption: map.into() }),
         done(Figure {
             title: "Maps by the slot that carries most",
@@ -104,6 +104,7 @@ fn figures(content: &Content<'_>) -> Result<Vec<Figure>> {
                 .into(),
         }),
     ];
+    figures.extend(super::normal::figures(pair)?);
     bar.finish_and_clear();
     Ok(figures)
 }
