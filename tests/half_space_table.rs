@@ -1,28 +1,33 @@
-//! Half-space tables: an interrupted compilation goes on to the same bytes.
+//! Half-space tables: an interrupted compilation goes on to the same bytes, and shards make up the same.
 
 mod common;
 
 use std::path::Path;
 
 use flangeway::ContactTable;
-use flangeway_host::compile::{Checkpoint, Uniform, checkpoint_key, compile_from};
+use flangeway_host::compile::{Checkpoint, Settled, Shard, Uniform, checkpoint_key, compile_from, merge};
 use flangeway_host::pair::Pair;
 use flangeway_host::recipe::{NodeValues, Recipe};
 
 fn recipe() -> Recipe {
-    let text = format!("{}\n[solver]\nnormal = \"half-space\"\n", flangeway_tables::S1002_60E1_40);
-    let mut recipe = common::recipe(&text);
-    recipe.grid.node_values = NodeValues::Sampled;
-    recipe.grid.lateral_m.range = [-4e-3, 0.0];
-    recipe.grid.yaw_rad.range = [0.0, 4e-3];
+    let text = flangeway_tables::S1002_60E1_40
+        .replace("[-0.010, 0.010]", "[-0.004, 0.0]")
+        .replace("[0.0, 0.024]", "[0.0, 0.004]")
+        .replace("max_bytes", "node_values = \"sampled\"\nmax_bytes");
+    let recipe = common::recipe(&format!("{text}\n[solver]\nnormal = \"half-space\"\n"));
+    assert!(recipe.grid.node_values == NodeValues::Sampled && recipe.grid.lateral_m.range == [-4e-3, 0.0]);
     recipe
+}
+
+fn uniform() -> Uniform {
+    "5x2x3x2".parse().unwrap()
 }
 
 /// The image, and the checkpoint as it stood before the end.
 fn compiled(recipe: &Recipe, pair: &Pair, path: &Path) -> (Vec<u8>, Vec<u8>) {
-    let uniform: Uniform = "5x2x3x2".parse().unwrap();
-    let mut checkpoint = Checkpoint::open(path, checkpoint_key(recipe, pair, Some(uniform))).unwrap();
-    let image = compile_from(recipe, pair, Some(uniform), &mut checkpoint).unwrap().image;
+    let key = checkpoint_key(recipe, pair, Some(uniform()), None).unwrap();
+    let mut checkpoint = Checkpoint::open(path, key).unwrap();
+    let image = compile_from(recipe, pair, Some(uniform()), &mut checkpoint).unwrap().image;
     let kept = std::fs::read(path).unwrap();
     checkpoint.finish().unwrap();
     assert!(!path.exists(), "a finished table needs no checkpoint");
@@ -30,7 +35,7 @@ fn compiled(recipe: &Recipe, pair: &Pair, path: &Path) -> (Vec<u8>, Vec<u8>) {
 }
 
 #[test]
-fn an_interrupted_compilation_goes_on_to_the_same_bytes() {
+fn an_interrupted_compilation_and_shards_give_the_same_bytes() {
     let recipe = recipe();
     let pair = Pair::build(&recipe).unwrap();
     let folder = std::env::temp_dir().join(format!("flangeway-checkpoint-{}", std::process::id()));
@@ -42,5 +47,12 @@ fn an_interrupted_compilation_goes_on_to_the_same_bytes() {
     // Cut off inside the last block, as by a crash while it was written.
     std::fs::write(&path, &checkpoint[..checkpoint.len() - 7]).unwrap();
     assert_eq!(compiled(&recipe, &pair, &path).0, whole);
+    let settled = Settled::new(&recipe, &pair, Some(uniform())).unwrap();
+    let shards = ["1/2", "2/2"].map(|part| {
+        let path = folder.join(part.replace('/', "of"));
+        Shard::new(&recipe, &pair, settled.clone(), part.parse().unwrap()).unwrap().write(&path).unwrap();
+        path
+    });
+    assert_eq!(merge(&shards).unwrap().1.image, whole);
     std::fs::remove_dir_all(&folder).unwrap();
 }
