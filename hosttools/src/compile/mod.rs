@@ -45,7 +45,7 @@ const FIGURE_LINES: usize = 200;
 const FIGURE_SEED: u64 = 1;
 /// The same for half-space tables, whose solver takes a hundred times as long.
 const HALF_SPACE_SAMPLES: usize = 1000;
-const HALF_SPACE_LINES: usize = 40;
+const HALF_SPACE_LINES: usize = 12;
 
 /// A finished table and what it took.
 #[derive(Debug, Clone)]

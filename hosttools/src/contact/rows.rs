@@ -17,16 +17,37 @@ const SECANT_TOLERANCE: f64 = 1e-13;
 pub struct Zone {
     /// Rail parameters (m) of its ends.
     pub ends: [f64; 2],
-    /// Rail and wheel parameter (m) of points in it, in order.
-    feet: Vec<[f64; 2]>,
+    /// Rail parameter, wheel parameter and overlap (m) of points in it, in order.
+    feet: Vec<[f64; 3]>,
 }
 
 impl Zone {
     /// First guess of the wheel's parameter over a rail parameter.
     fn wheel_near(&self, s: f64) -> f64 {
         let above = self.feet.partition_point(|foot| foot[0] < s).clamp(1, self.feet.len() - 1);
-        let [[s0, t0], [s1, t1]] = [self.feet[above - 1], self.feet[above]];
+        let [[s0, t0, _], [s1, t1, _]] = [self.feet[above - 1], self.feet[above]];
         if s1 > s0 { t0 + (t1 - t0) * (s - s0) / (s1 - s0) } else { t0 }
+    }
+
+    /// Rail parameters (m) that cut the zone into `count` strips, denser where the overlap is deep: each has the same
+    /// part of ∫ w² + (w_max / 10)² ds. They are continuous in the pose.
+    pub fn cuts(&self, count: usize) -> Vec<f64> {
+        let deepest = self.feet.iter().map(|foot| foot[2]).fold(0.0, f64::max);
+        let density = |foot: &[f64; 3]| foot[2] * foot[2] + 0.01 * deepest * deepest;
+        let mut sums = vec![0.0];
+        for pair in self.feet.windows(2) {
+            let part = 0.5 * (density(&pair[0]) + density(&pair[1])) * (pair[1][0] - pair[0][0]).max(0.0);
+            sums.push(sums[sums.len() - 1] + part);
+        }
+        let total = sums[sums.len() - 1];
+        let cut = |k: usize| {
+            let target = total * k as f64 / count as f64;
+            let above = sums.partition_point(|sum| *sum < target).clamp(1, sums.len() - 1);
+            let (low, high) = (sums[above - 1], sums[above]);
+            let share = if high > low { (target - low) / (high - low) } else { 0.0 };
+            self.feet[above - 1][0] + share * (self.feet[above][0] - self.feet[above - 1][0])
+        };
+        (0..=count).map(cut).collect()
     }
 }
 
@@ -74,8 +95,8 @@ pub(super) fn zones(body: &Body, ridge: &Ridge<'_>, centre: f64, samples: &[Samp
             };
         let ends = [crossing(first, first.checked_sub(1)), crossing(i - 1, Some(i))];
         let parameters = std::iter::once(ends[0]).chain(wheel[first..i].iter().map(|p| p.t)).chain([ends[1]]);
-        let feet: Vec<[f64; 2]> =
-            parameters.filter_map(|t| ridge.at(t, centre).map(|point| [point.foot.t, point.wheel.t])).collect();
+        let foot = |t: f64| ridge.at(t, centre).map(|point| [point.foot.t, point.wheel.t, point.depth().max(0.0)]);
+        let feet: Vec<[f64; 3]> = parameters.filter_map(foot).collect();
         if let [first, .., last] = feet.as_slice() {
             zones.push(Zone { ends: [first[0], last[0]], feet });
         }

@@ -9,13 +9,15 @@ use crate::pair::Pair;
 use crate::report::style::{Axis, Drawn, LEGEND, Mark, dashes, figure, legend, line, panel, panel_height, plain, px};
 
 const PLOT: u32 = 320;
-/// Yaw (rad) and load (N) of the transfer, its lateral displacements (m) and steps.
+/// Yaw (rad) of the transfer and its height (m) above the rigid contact, its lateral displacements (m) and steps.
 pub(super) const YAW: f64 = 5e-3;
-pub(super) const LOAD: f64 = 60e3;
+pub(super) const DEPTH: f64 = 70e-6;
 const LATERAL: [f64; 2] = [4e-3, 7.5e-3];
 const STEPS: usize = 350;
 /// Lateral displacements (m) and yaw (rad) of the curves over the height, which ends (m) above the rigid contact.
 const PLACES: [[f64; 2]; 2] = [[0.5e-3, 0.0], [5.5e-3, 5e-3]];
+/// Load (N) of a wheel that just touches.
+const TOUCHING: f64 = 1.0;
 const HIGHEST: f64 = 0.1e-3;
 const HEIGHTS: usize = 50;
 
@@ -51,13 +53,13 @@ fn draw(area: &crate::report::style::Area<'_>, title: &str, label: &str, curves:
 
 /// Force over the height above the rigid contact.
 pub(super) fn over_height(models: &[Pair; 3]) -> Result<String> {
-    let [_, semi, _] = models;
+    let [hertz, ..] = models;
     figure("force over the height", LEGEND + panel_height(PLOT), |area| {
         let (above, below) = area.split_vertically(px(LEGEND));
         legend(&above, &entries())?;
         for (place, [lateral, yaw]) in below.split_evenly((1, 2)).iter().zip(PLACES) {
             let at = Coordinates { lateral, yaw, ..Coordinates::default() };
-            let Some(start) = pose(semi, &at, 1.0) else { continue };
+            let Some(start) = pose(hertz, &at, TOUCHING) else { continue };
             let height = |i: usize| HIGHEST * i as f64 / HEIGHTS as f64;
             let point = |i: usize| {
                 let pose = Pose { vertical: start.vertical + height(i), ..start };
@@ -73,17 +75,19 @@ pub(super) fn over_height(models: &[Pair; 3]) -> Result<String> {
 
 /// Total force on the way from tread to flange.
 pub(super) fn transfer(models: &[Pair; 3]) -> Result<String> {
-    let [_, semi, _] = models;
+    let [hertz, ..] = models;
     let lateral = |i: usize| LATERAL[0] + (LATERAL[1] - LATERAL[0]) * i as f64 / STEPS as f64;
     let point = |i: usize| {
         let at = Coordinates { lateral: lateral(i), yaw: YAW, ..Coordinates::default() };
-        Some((1e3 * lateral(i), forces(models, &pose(semi, &at, LOAD)?)))
+        let touching = pose(hertz, &at, TOUCHING)?;
+        let pose = Pose { vertical: touching.vertical + DEPTH, ..touching };
+        Some((1e3 * lateral(i), forces(models, &pose)))
     };
     let points: Vec<_> = (0..=STEPS).into_par_iter().filter_map(point).collect();
     figure("total force from tread to flange", LEGEND + panel_height(PLOT), |area| {
         let (above, below) = area.split_vertically(px(LEGEND));
         legend(&above, &entries())?;
-        let title = format!("{} kN on the right wheel, yaw {} mrad", plain(&(1e-3 * LOAD)), plain(&(1e3 * YAW)));
+        let title = format!("{} µm below first contact, yaw {} mrad", plain(&(1e6 * DEPTH)), plain(&(1e3 * YAW)));
         draw(&below, &title, "lateral displacement u of the tape-circle point (mm)", curves(&points))
     })
 }

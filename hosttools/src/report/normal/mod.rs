@@ -61,10 +61,10 @@ pub(super) fn figures(pair: &Pair) -> Result<Vec<Figure>> {
             title: "From tread to flange, by three models",
             svg: curves::transfer(&models)?,
             caption: format!(
-                "Total normal force of the right wheel moved sideways at yaw {} mrad, at the height at which the \
-                 semi-Hertzian method carries {} kN. What is a step with Hertz is where patches merge or change places.",
+                "Total normal force of the right wheel moved sideways at yaw {} mrad, {} µm below the height at which it \
+                 first touches. What is a step with Hertz is where peaks of one patch merge or change places.",
                 1e3 * curves::YAW,
-                1e-3 * curves::LOAD
+                1e6 * curves::DEPTH
             ),
         },
     ])
