@@ -101,9 +101,11 @@ fn naive(report: &Value) {
 
 fn page(html: &str) {
     for mark in ["<svg", "</svg>", "<figcaption>"] {
-        assert_eq!(html.matches(mark).count(), 5, "{mark}");
+        // Five of the table, three of the models of normal contact.
+        assert_eq!(html.matches(mark).count(), 5 + 3, "{mark}");
     }
-    for heading in ["Against a naive table", "The worst poses", "Continuity"] {
+    for heading in ["Against a naive table", "The worst poses", "Continuity", "Force over the height, by three models"]
+    {
         assert!(html.contains(heading), "{heading}");
     }
     assert!(html.ends_with("</html>\n"));
