@@ -11,16 +11,15 @@ use std::fs::{File, OpenOptions};
 use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 
-use crc::{CRC_32_ISCSI, Crc};
 use flangeway::{CHANNELS, SLOTS, Side};
 
+use super::CRC;
 use super::adaptive::Bound;
 use super::axes::Axes;
 use super::quantise;
 use crate::contact::SlotState;
 use crate::error::{Error, Result};
 
-const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
 const KEY: usize = 32;
 /// What may have ended the refinement of the axes, by its number in the file.
 const BOUNDS: [Bound; 4] = [Bound::Counts, Bound::Bytes, Bound::Error, Bound::Resolved];

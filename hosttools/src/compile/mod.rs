@@ -39,6 +39,9 @@ use solved::Solved;
 /// The program and its version, as they stand in every table.
 pub const GENERATOR: &str = concat!("flangeway-host ", env!("CARGO_PKG_VERSION"));
 
+/// CRC-32C (Castagnoli), as the tables have, of what is kept between runs.
+const CRC: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISCSI);
+
 /// Poses and lines for the error figures that the compiler writes into the header, and their seed.
 const FIGURE_SAMPLES: usize = 4000;
 const FIGURE_LINES: usize = 200;

@@ -19,7 +19,7 @@ use super::axes::{Axes, Uniform};
 use super::checkpoint::Checkpoint;
 use super::half_space;
 use super::solved::Solved;
-use super::{Assembled, Bound, Compiled, CompiledSide, Compiler, GENERATOR};
+use super::{Assembled, Bound, CRC, Compiled, CompiledSide, Compiler, GENERATOR};
 use crate::error::{Error, Result};
 use crate::image::write_atomically;
 use crate::pair::Pair;
@@ -27,8 +27,6 @@ use crate::recipe::Recipe;
 
 const AXES_MAGIC: &[u8; 8] = b"FWAXES01";
 const SHARD_MAGIC: &[u8; 8] = b"FWPART01";
-/// CRC-32C (Castagnoli), as the tables have.
-const CRC: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISCSI);
 
 /// Which shard of how many, as `i/n` from `1/n` to `n/n`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
