@@ -5,7 +5,7 @@ mod common;
 use std::path::Path;
 
 use flangeway::ContactTable;
-use flangeway_host::compile::{Checkpoint, Settled, Shard, Uniform, checkpoint_key, compile_from, merge};
+use flangeway_host::compile::{Checkpoint, Settled, Shard, Uniform, compile_from, merge};
 use flangeway_host::pair::Pair;
 use flangeway_host::recipe::{NodeValues, Recipe};
 
@@ -24,11 +24,12 @@ fn uniform() -> Uniform {
 }
 
 /// The image, and the checkpoint as it stood before the end.
-fn compiled(recipe: &Recipe, pair: &Pair, path: &Path) -> (Vec<u8>, Vec<u8>) {
-    let key = checkpoint_key(recipe, pair, Some(uniform()), None).unwrap();
-    let mut checkpoint = Checkpoint::open(path, key).unwrap();
+fn compiled(recipe: &Recipe, pair: &Pair, table: &Path) -> (Vec<u8>, Vec<u8>) {
+    let mut checkpoint = Checkpoint::of_table(table, recipe, pair, Some(uniform()), None).unwrap();
+    let path = checkpoint.path().unwrap().to_owned();
+    assert_eq!(checkpoint.resumes(), path.exists());
     let image = compile_from(recipe, pair, Some(uniform()), &mut checkpoint).unwrap().image;
-    let kept = std::fs::read(path).unwrap();
+    let kept = std::fs::read(&path).unwrap();
     checkpoint.finish().unwrap();
     assert!(!path.exists(), "a finished table needs no checkpoint");
     (image, kept)
@@ -40,12 +41,12 @@ fn an_interrupted_compilation_and_shards_give_the_same_bytes() {
     let pair = Pair::build(&recipe).unwrap();
     let folder = std::env::temp_dir().join(format!("flangeway-checkpoint-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
-    let path = folder.join("table.fwt.partial");
+    let path = folder.join("table.fwt");
     let (whole, checkpoint) = compiled(&recipe, &pair, &path);
     let table = ContactTable::new(&whole).unwrap();
     assert!(table.header().solver.starts_with("half-space"));
     // Cut off inside the last block, as by a crash while it was written.
-    std::fs::write(&path, &checkpoint[..checkpoint.len() - 7]).unwrap();
+    std::fs::write(folder.join("table.fwt.partial"), &checkpoint[..checkpoint.len() - 7]).unwrap();
     assert_eq!(compiled(&recipe, &pair, &path).0, whole);
     let settled = Settled::new(&recipe, &pair, Some(uniform())).unwrap();
     let shards = ["1/2", "2/2"].map(|part| {

@@ -7,6 +7,9 @@ use rayon::prelude::*;
 
 /// A bar over `length` steps; it draws at most five times a second, and only on a terminal.
 pub fn bar(length: u64, what: &'static str) -> ProgressBar {
+    if SILENT.load(Ordering::Relaxed) {
+        return ProgressBar::hidden();
+    }
     let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr_with_hz(5));
     if let Ok(style) = ProgressStyle::with_template("{prefix:>13} [{wide_bar}] {percent:>3} %, {eta} left") {
         bar.set_style(style.progress_chars("=> "));
@@ -18,7 +21,7 @@ pub fn bar(length: u64, what: &'static str) -> ProgressBar {
 /// Whether work runs side by side, where the bars of its parts would write over each other.
 static SILENT: AtomicBool = AtomicBool::new(false);
 
-/// Draws no bars inside [`parallel`] from now on.
+/// Makes no more bars that draw; those that are there go on.
 pub fn silence_parts() {
     SILENT.store(true, Ordering::Relaxed);
 }
@@ -32,10 +35,6 @@ pub fn parallel<T: Sync, U: Send>(
     what: &'static str,
     f: impl Fn(&T) -> U + Sync + Send,
 ) -> impl ParallelIterator<Item = U> {
-    let bar = if items.len() < WORTH_A_BAR || SILENT.load(Ordering::Relaxed) {
-        ProgressBar::hidden()
-    } else {
-        bar(items.len() as u64, what)
-    };
+    let bar = if items.len() < WORTH_A_BAR { ProgressBar::hidden() } else { bar(items.len() as u64, what) };
     items.par_iter().progress_with(bar).map(f)
 }

@@ -7,7 +7,7 @@ use std::time::Instant;
 use super::manifest::Entry;
 use super::records::{self, Finish, Log, Record};
 use super::store::{Folder, State};
-use crate::compile::compile;
+use crate::compile::{Checkpoint, compile_from};
 use crate::error::{Error, Result};
 use crate::image::write_atomically;
 use crate::pair::Pair;
@@ -85,17 +85,21 @@ impl Shared<'_> {
             return Ok(());
         }
         let (start, cpu) = (Instant::now(), records::cpu_seconds());
-        let recipe = self.folder.recipe(entry)?;
-        let mut warnings = Vec::new();
+        let (recipe, table) = (self.folder.recipe(entry)?, self.folder.table(&entry.id));
+        let (mut warnings, mut checkpoint) = (Vec::new(), Checkpoint::none());
         let compiled = Pair::build(&recipe).and_then(|pair| {
             warnings = profile_noise::warnings(&recipe, &pair)?;
-            compile(&recipe, &pair, None)
+            checkpoint = Checkpoint::of_table(&table, &recipe, &pair, None, None)?;
+            compile_from(&recipe, &pair, None, &mut checkpoint)
         });
         let (finish, said) = match &compiled {
             Ok(compiled) => {
-                write_atomically(self.folder.table(&entry.id), &compiled.image)?;
+                write_atomically(&table, &compiled.image)?;
+                checkpoint.finish()?;
                 (Finish::Done, format!("p95 {:.2} %", 1e2 * compiled.errors.force_p95))
             }
+            // Not the pair's fault: the disk is full.
+            Err(e) if checkpoint.path() == Some(&e.path) => return Err(e.clone()),
             Err(e) => (Finish::Failed(e.to_string()), format!("failed: {e}")),
         };
         let seconds = start.elapsed().as_secs_f64();

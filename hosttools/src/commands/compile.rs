@@ -6,8 +6,7 @@ use std::time::Instant;
 use serde_json::json;
 
 use super::print_json;
-use crate::compile::{Checkpoint, Compiled, Part, Settled, Shard, Uniform, checkpoint_key, compile_from};
-use crate::contact::Normal;
+use crate::compile::{Checkpoint, Compiled, Part, Settled, Shard, Uniform, compile_from};
 use crate::error::Result;
 use crate::image::{folder_of, write_atomically};
 use crate::pair::Pair;
@@ -88,14 +87,9 @@ pub fn run(args: &CompileArgs) -> Result<()> {
             Shard::new(&recipe, &pair, settle()?, part)?.write(&args.output)?;
             eprintln!("{}: shard {part}, {:.1} s", args.output.display(), seconds());
         } else {
-            let mut checkpoint = Checkpoint::none();
-            if recipe.solver.normal == Normal::HalfSpace {
-                let path = Checkpoint::path_beside(&args.output);
-                let key = checkpoint_key(&recipe, &pair, args.uniform, settled.as_ref())?;
-                checkpoint = Checkpoint::open(&path, key)?;
-                if checkpoint.resumes() {
-                    eprintln!("flangeway: going on from {}", path.display());
-                }
+            let mut checkpoint = Checkpoint::of_table(&args.output, &recipe, &pair, args.uniform, settled.as_ref())?;
+            if let Some(path) = checkpoint.path().filter(|_| checkpoint.resumes()) {
+                eprintln!("flangeway: going on from {}", path.display());
             }
             let compiled = match &settled {
                 Some(settled) => settled.compile(&recipe, &pair, &mut checkpoint)?,

@@ -2,23 +2,28 @@
 //!
 //! ```text
 //! 32 bytes  SHA-256 of what the table depends on
-//! blocks    length of the payload (u32), CRC-32C of it (u32), payload
+//! blocks    length of the payload (u32), CRC-32C of those 32 bytes and it (u32), payload
 //! ```
-//! The first block holds what ended the refinement of the axes and the axes themselves, each other one a side and the nodes of some columns. A block that was cut off or
-//! does not match its checksum ends the file; what stands before it is used. All numbers are little-endian.
+//! The first block holds what ended the refinement of the axes and the axes themselves, each other one a side and the
+//! nodes of some columns. A block that was cut off or does not match its checksum ends the file; what stands before it
+//! is used. All numbers are little-endian.
 
 use std::fs::{File, OpenOptions};
-use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
+use std::io::{ErrorKind, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 
 use flangeway::{CHANNELS, SLOTS, Side};
+use sha2::{Digest as _, Sha256};
 
-use super::CRC;
 use super::adaptive::Bound;
-use super::axes::Axes;
+use super::axes::{Axes, Uniform};
 use super::quantise;
-use crate::contact::SlotState;
+use super::shard::Settled;
+use super::{CRC, GENERATOR};
+use crate::contact::{Normal, SlotState};
 use crate::error::{Error, Result};
+use crate::pair::Pair;
+use crate::recipe::Recipe;
 
 const KEY: usize = 32;
 /// What may have ended the refinement of the axes, by its number in the file.
@@ -29,42 +34,55 @@ const SLOT_BYTES: usize = 8 * CHANNELS + 2;
 /// Where a compilation stands, and the file that remembers it.
 #[derive(Default)]
 pub struct Checkpoint {
-    file: Option<(PathBuf, File)>,
+    path: Option<PathBuf>,
+    key: [u8; KEY],
     blocks: Vec<Vec<u8>>,
+    /// Bytes of the whole blocks in the file.
+    length: usize,
+    /// Open from the first block that is written.
+    file: Option<File>,
 }
 
 impl Checkpoint {
-    /// The file a table's checkpoint is kept in while the table is compiled: `T.fwt.partial` beside `T.fwt`.
-    pub fn path_beside(output: &Path) -> PathBuf {
-        let mut name = output.as_os_str().to_owned();
-        name.push(".partial");
-        name.into()
-    }
-
     /// No file: nothing is kept.
     pub fn none() -> Self {
         Self::default()
     }
 
-    /// Opens a checkpoint, or begins one. One of another recipe, profile or version of the program begins anew.
+    /// That of a table: `T.fwt.partial` beside `T.fwt`, while the table is compiled. Only half-space tables have one,
+    /// others are done in seconds. Two processes at the same table write the same blocks to the same places, so it needs
+    /// no lock.
     ///
     /// # Errors
-    /// When the file cannot be read or written.
-    pub fn open(path: &Path, key: [u8; KEY]) -> Result<Self> {
-        let failed = |e: std::io::Error| Error::file(path, e.to_string());
-        let mut file =
-            OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).map_err(failed)?;
-        let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes).map_err(failed)?;
-        let (blocks, length) = match bytes.strip_prefix(&key) {
-            Some(rest) => read_blocks(rest),
-            None => (Vec::new(), 0),
+    /// When the file is there and cannot be read.
+    pub fn of_table(
+        output: &Path,
+        recipe: &Recipe,
+        pair: &Pair,
+        uniform: Option<Uniform>,
+        settled: Option<&Settled>,
+    ) -> Result<Self> {
+        if pair.body(Side::Right).settings().normal != Normal::HalfSpace {
+            return Ok(Self::none());
+        }
+        let mut name = output.as_os_str().to_owned();
+        name.push(".partial");
+        Self::open(Path::new(&name), key(recipe, pair, uniform, settled)?)
+    }
+
+    /// What a file holds, if there is one. One of another recipe, profile or version of the program counts for nothing.
+    fn open(path: &Path, key: [u8; KEY]) -> Result<Self> {
+        let bytes = match std::fs::read(path) {
+            Err(e) if e.kind() != ErrorKind::NotFound => return Err(Error::file(path, e.to_string())),
+            read => read.unwrap_or_default(),
         };
-        file.set_len((KEY + length) as u64).map_err(failed)?;
-        file.rewind().map_err(failed)?;
-        file.write_all(&key).map_err(failed)?;
-        file.seek(SeekFrom::End(0)).map_err(failed)?;
-        Ok(Self { file: Some((path.into(), file)), blocks })
+        let (blocks, length) = bytes.strip_prefix(&key).map(|rest| read_blocks(rest, &key)).unwrap_or_default();
+        Ok(Self { path: Some(path.into()), key, blocks, length, file: None })
+    }
+
+    /// The file, where one is kept.
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
     }
 
     /// Whether there is something to go on from.
@@ -72,23 +90,33 @@ impl Checkpoint {
         !self.blocks.is_empty()
     }
 
-    /// Removes the file: the table stands.
+    /// Removes the file: the table stands. Another process at the same table may have done so.
     ///
     /// # Errors
     /// When it cannot be removed.
     pub fn finish(self) -> Result<()> {
-        let Some((path, file)) = self.file else { return Ok(()) };
-        drop(file);
-        std::fs::remove_file(&path).map_err(|e| Error::file(path, e.to_string()))
+        let Some(path) = self.path else { return Ok(()) };
+        drop(self.file);
+        match std::fs::remove_file(&path) {
+            Err(e) if e.kind() != ErrorKind::NotFound => Err(Error::file(path, e.to_string())),
+            _ => Ok(()),
+        }
     }
 
     fn append(&mut self, payload: &[u8]) -> Result<()> {
-        let Some((path, file)) = &mut self.file else { return Ok(()) };
+        let Some(path) = &self.path else { return Ok(()) };
         let mut block = Vec::with_capacity(8 + payload.len());
         block.extend((payload.len() as u32).to_le_bytes());
-        block.extend(CRC.checksum(payload).to_le_bytes());
+        block.extend(checksum(&self.key, payload).to_le_bytes());
         block.extend(payload);
-        file.write_all(&block).and_then(|()| file.sync_data()).map_err(|e| Error::file(path, e.to_string()))
+        let mut write = || {
+            let file = match &mut self.file {
+                Some(file) => file,
+                none => none.insert(begun(path, &self.key, self.length)?),
+            };
+            file.write_all(&block).and_then(|()| file.sync_data())
+        };
+        write().map_err(|e| Error::file(path, e.to_string()))
     }
 
     /// The axes that an earlier run settled on, and what ended their refinement.
@@ -135,13 +163,46 @@ impl Checkpoint {
     }
 }
 
+/// What a table depends on: recipe, profiles and program, what the command line puts in their place, and axes settled
+/// before.
+fn key(recipe: &Recipe, pair: &Pair, uniform: Option<Uniform>, settled: Option<&Settled>) -> Result<[u8; KEY]> {
+    let mut hash = Sha256::new();
+    hash.update(GENERATOR);
+    hash.update(&recipe.text);
+    hash.update(format!("{uniform:?} {}", recipe.grid.max_bytes));
+    for side in Side::ALL.into_iter().take(pair.sides()) {
+        hash.update(pair.source(side).wheel.source_hash);
+        hash.update(pair.source(side).rail.source_hash);
+    }
+    if let Some(settled) = settled {
+        hash.update(settled.digest()?);
+    }
+    Ok(hash.finalize().into())
+}
+
+/// The file, cut to its whole blocks, ready for the next one.
+fn begun(path: &Path, key: &[u8; KEY], length: usize) -> std::io::Result<File> {
+    let mut file = OpenOptions::new().write(true).create(true).truncate(false).open(path)?;
+    file.set_len((KEY + length) as u64)?;
+    file.write_all(key)?;
+    file.seek(SeekFrom::End(0))?;
+    Ok(file)
+}
+
+fn checksum(key: &[u8; KEY], payload: &[u8]) -> u32 {
+    let mut digest = CRC.digest();
+    digest.update(key);
+    digest.update(payload);
+    digest.finalize()
+}
+
 /// Whole blocks from the start, and how many bytes they take.
-fn read_blocks(bytes: &[u8]) -> (Vec<Vec<u8>>, usize) {
+fn read_blocks(bytes: &[u8], key: &[u8; KEY]) -> (Vec<Vec<u8>>, usize) {
     let (mut blocks, mut rest) = (Vec::new(), bytes);
     while let Some((head, tail)) = rest.split_first_chunk::<8>() {
         let number = |n: usize| u32::from_le_bytes([head[n], head[n + 1], head[n + 2], head[n + 3]]);
         let Some((payload, after)) = tail.split_at_checked(number(0) as usize) else { break };
-        if CRC.checksum(payload) != number(4) {
+        if checksum(key, payload) != number(4) {
             break;
         }
         blocks.push(payload.to_vec());

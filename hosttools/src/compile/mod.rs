@@ -94,31 +94,6 @@ pub fn compile_from(
     finish(recipe, pair, table, bound)
 }
 
-/// What a half-space table depends on: recipe, profiles and program, what the command line puts in their place, and
-/// axes settled before.
-///
-/// # Errors
-/// None that can be met with settled axes that were read.
-pub fn checkpoint_key(
-    recipe: &Recipe,
-    pair: &Pair,
-    uniform: Option<Uniform>,
-    settled: Option<&Settled>,
-) -> Result<[u8; 32]> {
-    let mut hash = Sha256::new();
-    hash.update(GENERATOR);
-    hash.update(&recipe.text);
-    hash.update(format!("{uniform:?} {}", recipe.grid.max_bytes));
-    for side in Side::ALL.into_iter().take(pair.sides()) {
-        hash.update(pair.source(side).wheel.source_hash);
-        hash.update(pair.source(side).rail.source_hash);
-    }
-    if let Some(settled) = settled {
-        hash.update(settled.digest()?);
-    }
-    Ok(hash.finalize().into())
-}
-
 /// Measures a table and puts the figures into its image.
 fn finish(recipe: &Recipe, pair: &Pair, table: Assembled, bound: Bound) -> Result<Compiled> {
     let view = ContactTable::new(&table.image).map_err(|e| Error::field("", "table", e.to_string()))?;

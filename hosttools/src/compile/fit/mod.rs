@@ -21,6 +21,7 @@ mod least_squares;
 mod points;
 
 use flangeway::{CHANNELS, Channel, SLOTS};
+use indicatif::ParallelProgressIterator as _;
 use rayon::prelude::*;
 
 use super::axes::Axes;
@@ -28,6 +29,7 @@ use super::quantise::{self, WIDEST_GAP};
 use super::stencil::{Beyond, Place, Stencil};
 use crate::contact::SlotState;
 use crate::hertz::normal_force;
+use crate::progress;
 use crate::verify::LOADS;
 use least_squares::{Gain, Objective, Values, fit as least_squares};
 use points::Point;
@@ -59,6 +61,7 @@ pub(super) fn draw(
 /// Replaces the sampled node values of a side by ones fitted to the poses of all its cells.
 pub(super) fn fit(Points { places, points }: &Points, axes: &Axes, samples: &mut [[SlotState; SLOTS]]) {
     let mut fit = Fit { stencil: Stencil::new(axes), nodes: Nodes::of(samples) };
+    let bar = progress::bar((2 * ROUNDS + GEOMETRY.len()) as u64, "fitting nodes");
     for round in 0..ROUNDS {
         let weight = |(place, point): (&Place, &Point)| {
             let error = fit.error(place, point) / TOLERATED;
@@ -68,9 +71,13 @@ pub(super) fn fit(Points { places, points }: &Points, axes: &Axes, samples: &mut
         // The weight of a newton.
         let weights: Vec<f64> = places.par_iter().zip(points).map(weight).collect();
         fit.indentations(places, points, &weights);
+        bar.inc(1);
         fit.stiffnesses(places, points, &weights);
+        bar.inc(1);
     }
-    let changes: Vec<Values> = GEOMETRY.par_iter().map(|&channel| fit.geometry(places, points, channel)).collect();
+    let geometry = |&channel: &Channel| fit.geometry(places, points, channel);
+    let changes: Vec<Values> = GEOMETRY.par_iter().map(geometry).progress_with(bar.clone()).collect();
+    bar.finish_and_clear();
     for (&channel, change) in GEOMETRY.iter().zip(&changes) {
         fit.nodes.add_within(channel, change);
     }

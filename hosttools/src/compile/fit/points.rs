@@ -116,7 +116,7 @@ impl<'a> Drawing<'a> {
                 few
             }
         };
-        let mut drawn: Vec<Vec<(Place, Point)>> = progress::parallel(&cells, "fitting", draw).collect();
+        let mut drawn: Vec<Vec<(Place, Point)>> = progress::parallel(&cells, "poses to fit", draw).collect();
         let together = |cells: &mut [Vec<(Place, Point)>]| {
             let (places, points) = cells.iter_mut().flat_map(std::mem::take).unzip();
             Points { places, points }
