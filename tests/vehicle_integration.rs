@@ -170,3 +170,37 @@ fn a_left_hand_curve_is_the_mirror_image_of_a_right_hand_one() {
     }
     assert!(l.wheelsets[0].body.position[LATERAL] > 4e-3, "the outer flange leads");
 }
+
+/// Where and how a led wheelset with these dampers (N s/m) ends in a curve: lateral position and yaw.
+fn ends_in_a_curve(damping: f64) -> [f64; 2] {
+    let text = flangeway_tables::WHEELSET_R1000
+        .replace("damping_ns_per_m = [1.0e4, 1.0e4, 2.0e4]", &format!("damping_ns_per_m = [{damping:e}, 1.0e4, 2.0e4]"))
+        .replace("stiffness_n_per_m = [2.0e7", "stiffness_n_per_m = [2.0e6");
+    let scenario = Scenario::parse(&text, Path::new("wheelset.toml")).unwrap();
+    let ground = Ground::of(&scenario).unwrap();
+    let table = ground.table().unwrap().unwrap();
+    let contact = WheelRail {
+        source: Source::Table(&table),
+        law: Law::Polach,
+        friction: scenario.contact.friction(),
+        elasticity: ground.elasticity(),
+        damping: scenario.contact.damping_s_per_m,
+    };
+    let (track, irregularity) = (scenario.track(), Default::default());
+    let line = Line { track: &track, irregularity: &irregularity, contact: &contact, speed: 15.0 };
+    let mut vehicle = Vehicle::at_rest(scenario.parameters(), &line).unwrap();
+    while vehicle.distance < track.length() {
+        vehicle.step(1e-4, &line);
+    }
+    [LATERAL, YAW].map(|i| vehicle.wheelsets[0].body.position[i])
+}
+
+#[test]
+fn dampers_do_nothing_in_a_steady_curve() {
+    let ([y, yaw], [damped_y, damped_yaw]) = (ends_in_a_curve(1e4), ends_in_a_curve(3e5));
+    // What leads the wheelset turns with the curve as it does. A frame at rest would turn it by 2 d² c V κ / (2 d² k).
+    let at_rest = (3e5 - 1e4) * 15.0 / 1000.0 / 2e6;
+    println!("yaw {yaw:e}, damped {damped_yaw:e}; by a frame at rest {at_rest:e} more");
+    assert!((damped_yaw - yaw).abs() < 1e-3 * at_rest, "{yaw:e} {damped_yaw:e}");
+    assert!((damped_y - y).abs() < 1e-7, "{y:e} {damped_y:e}");
+}

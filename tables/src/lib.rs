@@ -62,5 +62,7 @@ pub static ALL: [Committed; 5] = [
 
 /// Scenario of the paper's section 5: a single wheelset with simplified profiles, R = 1000 m at 15 m/s.
 pub const WHEELSET_R1000: &str = include_str!("../scenarios/wheelset_r1000.toml");
+/// Recipe of the pair on which `flangeway reproduce` runs [`BOGIE_R60`]; its table is compiled there.
+pub const URBAN_ARCS: &str = include_str!("../scenarios/urban_arcs.toml");
 /// Scenario of the paper's section 6: a metre-gauge bogie, R = 60 m at 15 m/s.
 pub const BOGIE_R60: &str = include_str!("../scenarios/bogie_r60.toml");

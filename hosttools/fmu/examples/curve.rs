@@ -33,10 +33,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let speed = scenario.run.speed_m_per_s;
     let line = Line { track: &track, irregularity: &irregularity, contact: &contact, speed };
     let mut vehicle = Vehicle::at_rest(scenario.parameters(), &line)?;
-    let led_from = scenario.parameters().led_from_m;
     let mut bytes = Vec::new();
     loop {
-        for number in row(&vehicle, &track, &irregularity, speed, led_from) {
+        for number in row(&vehicle, &track, &irregularity, speed) {
             bytes.extend(number.to_le_bytes());
         }
         if vehicle.distance >= track.length() {
@@ -48,17 +47,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-fn row(vehicle: &Vehicle, track: &Track, irregularity: &Irregularity, speed: f64, led_from: f64) -> Vec<f64> {
+fn row(vehicle: &Vehicle, track: &Track, irregularity: &Irregularity, speed: f64) -> Vec<f64> {
     let at = vehicle.distance;
     let place = track.at(at);
-    let [_, guide_yaw] = track.chord(at, -led_from);
     let (rails, slopes) = irregularity.at(at);
     let mut row = vec![vehicle.time, speed, place.curvature, place.cant, track.heading(at), place.cant_slope];
     for offsets in [rails, slopes] {
         row.extend([offsets.lateral, offsets.vertical, offsets.cross_level]);
     }
-    // The far end of the suspension: led, without motion of its own; then no forces of the importer's.
-    row.extend([0.0, 0.0, 0.0, guide_yaw, 0.0, 0.0, 0.0, 0.0]);
+    // The far end of the suspension, led along the track at its height of rest; then no forces of the importer's.
+    let (q, v) = (&vehicle.frame.position, &vehicle.frame.velocity);
+    row.extend([q[LATERAL], 0.0, q[ROLL], q[YAW], v[LATERAL], v[VERTICAL], v[ROLL], v[YAW]]);
     row.extend([0.0; 5]);
     let wheelset = &vehicle.wheelsets[0];
     let (q, v) = (&wheelset.body.position, &wheelset.body.velocity);

@@ -15,8 +15,8 @@ use crate::profile_noise;
 /// Arguments of `flangeway profile`.
 #[derive(Debug, Clone, clap::Args)]
 pub struct ProfileArgs {
-    /// Profile file, or a built-in: s1002, cone:1/20, circular_wheel:0.1, two_line, 60e1, 54e1, flat_rail,
-    /// circular_rail:0.3
+    /// Profile file, or a built-in: s1002, cone:1/20, circular_wheel:0.1, two_line, urban_arcs, 60e1, 54e1,
+    /// flat_rail, circular_rail:0.3
     #[arg(value_name = "FILE|BUILTIN")]
     pub profile: String,
     /// What the profile belongs to, where the file does not say

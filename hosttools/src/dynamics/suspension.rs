@@ -45,13 +45,15 @@ pub struct Seat {
 }
 
 impl Seat {
-    /// The seat of an axle `ahead` of a bogie (m) whose centre is at a distance (m) on the track, at a speed (m/s).
+    /// The seat of an axle's boxes, `[ahead, below]` a bogie's centre (m), which is at a distance (m) on the track, at a
+    /// speed (m/s).
     #[must_use]
-    pub fn at(track: &Track, distance: f64, ahead: f64, speed: f64) -> Self {
+    pub fn at(track: &Track, distance: f64, [ahead, below]: [f64; 2], speed: f64) -> Self {
         let [offset, yaw] = track.chord(distance, ahead);
-        let roll = track.at(distance + ahead).cant - track.at(distance).cant;
-        // d/dt (offset - a ψf) = V (β - a κ) - a (ψf' - V κ), with ψf' absolute
-        Self { ahead, offset, offset_rate: speed * yaw, yaw, roll }
+        let here = track.at(distance);
+        let roll = track.at(distance + ahead).cant - here.cant;
+        // d/dt (offset - a ψf + h φf) = V (β - a κ) - a (ψf' - V κ) + h (φf' - V θ'), with ψf' and φf' absolute
+        Self { ahead, offset, offset_rate: speed * (yaw - below * here.cant_slope), yaw, roll }
     }
 }
 

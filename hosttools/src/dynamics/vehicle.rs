@@ -2,9 +2,10 @@
 //!
 //! What is carried is a mass that follows the track: gravity, cant and curve act on it, through its height they load the
 //! wheels of one side, and it neither sways nor turns. A single wheelset carries it on its axle boxes, and its suspension
-//! holds it to a frame that runs along the track exactly and points as the track does at a distance behind the axle: so it
-//! stands for the leading wheelset of a longer vehicle, which a curve leaves at an angle. A bogie carries it on the centre of its frame, which has five
-//! degrees of freedom of its own; the boxes' springs are preloaded by the weight, so that displacements count from rest.
+//! holds it to a frame that runs along the track exactly and points, and turns, as the track does at a distance behind
+//! the axle: so it stands for the leading wheelset of a longer vehicle, which a curve leaves at an angle. A bogie carries
+//! it on the centre of its frame, which has five degrees of freedom of its own; the boxes' springs are preloaded by the
+//! weight, so that displacements count from rest.
 
 use super::body::{Body, FrameTurn, LATERAL, PITCH, ROLL, VERTICAL, Vector5, YAW};
 use super::irregularity::Irregularity;
@@ -70,7 +71,7 @@ pub struct Vehicle {
     parameters: Parameters,
     /// Wheelsets, the leading one first.
     pub wheelsets: Vec<Wheelset>,
-    /// The bogie's frame; at rest for a single wheelset.
+    /// The bogie's frame, or the one that leads a single wheelset, seen from the track at the axle.
     pub frame: Body,
     /// Distance of its centre from the track's begin, m.
     pub distance: f64,
@@ -138,22 +139,19 @@ impl Vehicle {
         let half_base = self.parameters.frame.map_or(0.0, |frame| 0.5 * frame.wheelbase_m);
         self.distance = to;
         self.time += h;
-        if self.parameters.frame.is_some() {
-            self.frame.predict(h, turn(0.0));
-        }
         let Parameters { wheelset: constants, suspension, carried, frame, led_from_m } = self.parameters;
+        if frame.is_some() {
+            self.frame.predict(h, turn(0.0));
+        } else {
+            self.frame = leading_frame(track, to, led_from_m, speed, self.frame.position[VERTICAL]);
+        }
         let mut on_frame = Vector5::zeros();
         let axles = self.wheelsets.len() as f64;
         let preload = frame.map_or(0.0, |frame| GRAVITY * (frame.mass_kg + carried.mass_kg) / (2.0 * axles));
         for (index, wheelset) in self.wheelsets.iter_mut().enumerate() {
             let ahead = if index == 0 { half_base } else { -half_base };
             wheelset.body.predict(h, turn(ahead));
-            let seat = if frame.is_some() {
-                Seat::at(track, to, ahead, speed)
-            } else {
-                let [_, back] = track.chord(to, -led_from_m);
-                Seat { yaw: -back, ..Seat::default() }
-            };
+            let seat = Seat::at(track, to, [ahead, suspension.below_frame_m], speed);
             let reaction = suspension.reaction(&wheelset.body, &self.frame, &seat, preload);
             on_frame += reaction.frame;
             let place = track.at(to + ahead);
@@ -179,6 +177,21 @@ impl Vehicle {
             self.frame.correct(h, acceleration);
         }
     }
+}
+
+/// The frame that leads a single wheelset, seen from the track at its axle: there it follows track and cant, and it points
+/// and turns as the track does at a distance `behind` (m); `height` (m) is that at rest.
+///
+/// ```text
+/// ψf = Θ(s - b) - Θ(s),   ψf' = V κ(s - b),   φf' = V θ'(s), both absolute
+/// ```
+fn leading_frame(track: &Track, distance: f64, behind: f64, speed: f64, height: f64) -> Body {
+    let mut frame = Body::default();
+    frame.position[VERTICAL] = height;
+    frame.position[YAW] = track.heading(distance - behind) - track.heading(distance);
+    frame.velocity[YAW] = speed * track.at(distance - behind).curvature;
+    frame.velocity[ROLL] = speed * track.at(distance).cant_slope;
+    frame
 }
 
 impl Carried {

@@ -60,6 +60,8 @@ pub struct Touch {
     pub creepages: Creepages,
     /// Creep forces on the wheel.
     pub forces: CreepForces,
+    /// Its part of the wheel's lateral and vertical force on the rail.
+    pub loads: WheelLoads,
     /// Wear index T gamma: energy dissipated a metre of way, N.
     pub wear: f64,
 }
@@ -107,9 +109,11 @@ impl WheelRail<'_> {
                 let slip = (xi * xi + eta * eta).sqrt() * motion.speed as f32;
                 let patch = Patch::from(&*contact);
                 let forces = self.law.forces(&patch, &self.elasticity, &creepages, self.friction.at(slip));
-                on_wheel = on_wheel + contact_wrench(geometry, &motion.pose, contact, &forces);
+                let wrench = contact_wrench(geometry, &motion.pose, contact, &forces);
+                on_wheel = on_wheel + wrench;
+                let loads = WheelLoads::new(side, &wrench);
                 let wear = wear_index(&creepages, &forces);
-                wheel.touches[contact.slot.index()] = Some(Touch { contact: *contact, creepages, forces, wear });
+                wheel.touches[contact.slot.index()] = Some(Touch { contact: *contact, creepages, forces, loads, wear });
             }
             wheel.loads = WheelLoads::new(side, &on_wheel);
             total = total + on_wheel;

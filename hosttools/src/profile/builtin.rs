@@ -2,12 +2,21 @@
 
 use super::pieces::{Piece, profile};
 use super::reading::parse;
-use super::{Profile, ProfileKind, rails, s1002};
+use super::{Profile, ProfileKind, arcs, rails, s1002};
 use crate::error::{Error, Result};
 
 /// The built-in profiles, as they are written in a recipe.
-pub const BUILT_INS: [&str; 8] =
-    ["s1002", "cone:1/20", "circular_wheel:0.1", "two_line", "60e1", "54e1", "flat_rail", "circular_rail:0.3"];
+pub const BUILT_INS: [&str; 9] = [
+    "s1002",
+    "cone:1/20",
+    "circular_wheel:0.1",
+    "two_line",
+    "urban_arcs",
+    "60e1",
+    "54e1",
+    "flat_rail",
+    "circular_rail:0.3",
+];
 
 /// Ends (m) of the conical and circular wheels, those of the S1002.
 const WHEEL_ENDS: [f64; 2] = [-0.070, 0.060];
@@ -39,6 +48,7 @@ pub(super) fn build(spec: &str) -> Result<Profile> {
     match name {
         "s1002" => plain(s1002::s1002),
         "two_line" => plain(two_line),
+        "urban_arcs" => plain(arcs::urban_arcs),
         "60e1" => plain(rails::uic60),
         "54e1" => plain(rails::uic54),
         "flat_rail" => plain(flat_rail),

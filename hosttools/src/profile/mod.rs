@@ -4,6 +4,7 @@
 //! and the gauge face of a rail at negative y), z down, points in order from the flange or gauge side to the field
 //! side. A reader says in plain sentences what it recognised and changed, and refuses what it cannot place.
 
+mod arcs;
 mod builtin;
 mod cleanup;
 mod kinks;

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::runs::{Grounds, bogie};
+use super::runs::{Grounds, STAND_IN, bogie};
 use super::{Check, Plate};
 use crate::dynamics::body::YAW;
 use crate::dynamics::run::run;
@@ -17,7 +17,7 @@ const RADII: [f64; 8] = [60.0, 80.0, 120.0, 180.0, 270.0, 400.0, 600.0, 1000.0];
 /// Lateral acceleration left uncompensated in each of them, m/s².
 const ACCELERATION: f64 = 0.65;
 /// Lateral position (m) at which the outer wheel rests on its flange at every angle of attack, and the largest angle.
-const FLANGING: f64 = 7.0e-3;
+const FLANGING: f64 = 5.0e-3;
 const LARGEST: f64 = 40e-3;
 const STEPS: usize = 160;
 
@@ -64,10 +64,7 @@ pub(super) fn plate(grounds: &Grounds) -> Result<Plate> {
             vec![Curve::new(Mark::Line, flange, by_angle.clone())],
         ),
     ]];
-    let entries = [
-        (Mark::Line, INK, "stand-in for DT14: S1002 on 54E1, metre gauge".to_string()),
-        (Mark::Line, flange, "flange".to_string()),
-    ];
+    let entries = [(Mark::Line, INK, STAND_IN.to_string()), (Mark::Line, flange, "flange".to_string())];
     let falls = angles.windows(2).all(|w| w[1] < w[0]);
     let grows = contacts.windows(2).all(|w| w[1].1 > w[0].1);
     let (sharp, wide) = (1e3 * angles[0], 1e3 * angles[RADII.len() - 1]);

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use flangeway_tables::{BOGIE_R60, SIMPLIFIED_PAIR, URBAN_METRE_GAUGE, WHEELSET_R1000};
+use flangeway_tables::{BOGIE_R60, SIMPLIFIED_PAIR, SMALL_BYTES, URBAN_ARCS, WHEELSET_R1000};
 use indicatif::ProgressBar;
 
 use crate::compile::compile;
@@ -12,28 +12,36 @@ use crate::dynamics::scenario::{Method, Scenario};
 use crate::error::Result;
 use crate::recipe::Recipe;
 
-/// Rows of all runs, for the progress bar.
-pub(super) const LENGTH: u64 = 2 * 2_800 + 3 * 3_330;
+/// What figures of the urban pair say of it.
+pub(super) const STAND_IN: &str = "stand-in for DT14: wheel of lines and arcs on 54E1";
+/// What its second slot is.
+pub(super) const THROAT: &str = "throat (slot of the flange root)";
 
-/// Both pairs of the paper with tables of the recipes' own size.
+/// Rows of all runs, for the progress bar.
+pub(super) const LENGTH: u64 = 2 * 2_800 + 4 * 3_330;
+
+/// Both pairs of the paper; the urban one with a table of the recipe's own size, and again with a small one.
 pub(super) struct Grounds {
     pub(super) simplified: Ground,
     pub(super) urban: Ground,
+    pub(super) urban_small: Ground,
 }
 
 impl Grounds {
     pub(super) fn new() -> Result<Self> {
-        let ground = |text: &str, name: &str, table: bool| {
-            let recipe = Recipe::parse(text, Path::new(name))?;
+        let recipe = |text: &str, name: &str| Recipe::parse(text, Path::new(name));
+        let with_table = |recipe: Recipe| {
             let mut ground = Ground::new(recipe.clone(), None)?;
-            if table {
-                ground.image = Some(compile(&recipe, &ground.pair, None)?.image);
-            }
+            ground.image = Some(compile(&recipe, &ground.pair, None)?.image);
             Ok(ground)
         };
+        let urban = recipe(URBAN_ARCS, "urban_arcs.toml")?;
+        let mut small = urban.clone();
+        small.grid.max_bytes = SMALL_BYTES;
         Ok(Self {
-            simplified: ground(SIMPLIFIED_PAIR, "simplified_pair.toml", false)?,
-            urban: ground(URBAN_METRE_GAUGE, "urban_metre_gauge.toml", true)?,
+            simplified: Ground::new(recipe(SIMPLIFIED_PAIR, "simplified_pair.toml")?, None)?,
+            urban: with_table(urban)?,
+            urban_small: with_table(small)?,
         })
     }
 }
@@ -45,6 +53,7 @@ pub(super) struct Runs {
     pub(super) bogie_flat: Vec<Sample>,
     pub(super) bogie: Vec<Sample>,
     pub(super) bogie_by_table: Vec<Sample>,
+    pub(super) bogie_by_small_table: Vec<Sample>,
     /// Coefficient of friction of each, for Nadal's limit.
     pub(super) friction: f64,
 }
@@ -62,7 +71,7 @@ pub(super) fn bogie() -> Result<Scenario> {
 impl Runs {
     pub(super) fn new(grounds: &Grounds, bar: &ProgressBar) -> Result<Self> {
         let (single, bogie) = (single()?, bogie()?);
-        bar.set_length(rows(&single) * 2 + rows(&bogie) * 3 + 33);
+        bar.set_length(rows(&single) * 2 + rows(&bogie) * 4 + 33);
         let with = |scenario: &Scenario, ground: &Ground, method: Method| {
             let mut scenario = scenario.clone();
             scenario.contact.method = method;
@@ -72,15 +81,18 @@ impl Runs {
             || {
                 let runs = [Method::Direct2d, Method::Direct3d].map(|m| with(&single, &grounds.simplified, m));
                 let [flat, full] = runs;
-                Ok((flat?, full?, with(&bogie, &grounds.urban, Method::Table)?))
+                let tables = [&grounds.urban, &grounds.urban_small].map(|ground| with(&bogie, ground, Method::Table));
+                Ok((flat?, full?, tables))
             },
             || {
                 let [flat, full] = [Method::Direct2d, Method::Direct3d].map(|m| with(&bogie, &grounds.urban, m));
                 Ok((flat?, full?))
             },
         );
-        let (wheelset_flat, wheelset, bogie_by_table) = wheelset?;
+        let (wheelset_flat, wheelset, [by_table, by_small_table]) = wheelset?;
+        let (bogie_by_table, bogie_by_small_table) = (by_table?, by_small_table?);
         let (bogie_flat, bogie) = vehicle?;
-        Ok(Self { wheelset_flat, wheelset, bogie_flat, bogie, bogie_by_table, friction: single.contact.friction })
+        let friction = single.contact.friction;
+        Ok(Self { wheelset_flat, wheelset, bogie_flat, bogie, bogie_by_table, bogie_by_small_table, friction })
     }
 }
