@@ -25,8 +25,9 @@ const BUFFER: usize = 64 << 20;
 const WHEELS: usize = 8;
 
 /// Nodes from `first` to `last`.
-fn nodes(first: f32, last: f32, count: u16) -> Vec<f32> {
-    (0..count).map(|i| first + (last - first) * f32::from(i) / f32::from(count - 1)).collect()
+fn nodes(first: f32, last: f32, count: u16) -> Vec<f64> {
+    let (first, last) = (f64::from(first), f64::from(last));
+    (0..count).map(|i| first + (last - first) * f64::from(i) / f64::from(count - 1)).collect()
 }
 
 /// A made-up table of a million records.

@@ -49,7 +49,9 @@ fn the_kernel_takes_them_and_finds_contacts() {
         let mut most = 0;
         for i in 0..=2000 {
             let lateral = first + (last - first) * f64::from(i) / 2000.0;
-            let at = Coordinates { lateral, yaw: 0.002, roll_offset: 0.0, vertical: 5e-5 };
+            // Where the rigid contact jumps within the roll offsets, the map is a straight line and touching up to some tens
+            // of µm beyond it.
+            let at = Coordinates { lateral, yaw: 0.002, roll_offset: 0.0, vertical: 9e-5 };
             let pose = table.rigid(Side::Right).pose(&geometry, &at);
             let found = table.contacts(Side::Right, &pose);
             assert!(found.flags.is_empty(), "{name} at {lateral}: {:?}", found.flags);

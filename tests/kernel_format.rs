@@ -23,7 +23,7 @@ fn every_byte_of_a_tiny_image() {
     assert_eq!(image.len(), 0x0700);
     let crc = crc32c(image[..12].iter().chain(&image[16..]).copied());
     assert_eq!(image[12..16], crc.to_le_bytes());
-    assert_eq!(image[16..20], [0xd6, 0x01, 0, 0]);
+    assert_eq!(image[16..20], [0xd5, 0x01, 0, 0]);
     // Header, written by hand.
     let mut bytes = image[..20].to_vec();
     bytes.extend(b"\x0fflangeway tests\x04none");
@@ -32,7 +32,7 @@ fn every_byte_of_a_tiny_image() {
         bytes.extend(x.to_le_bytes());
     }
     bytes.extend([2, 1].repeat(4)); // nodes and bins of four axes
-    bytes.extend([1; 3]); // parts of an interval in the rigid maps
+    bytes.extend([1; 2]); // parts of an interval in the rigid map
     bytes.extend([0, 0]); // samples and seed
     bytes.extend([0; 24]); // six error figures
     bytes.extend(b"\x0dmade-up wheel\x0cmade-up rail");
@@ -47,19 +47,19 @@ fn every_byte_of_a_tiny_image() {
         bytes.extend(scale.step.to_le_bytes());
     }
     bytes.push(0); // no left side
-    assert_eq!(bytes.len(), 20 + 0x01d6);
+    assert_eq!(bytes.len(), 20 + 0x01d5);
     bytes.resize(512, 0);
     // Axes: two nodes each, then one bin each, which leads to cell 0.
     for axis in &tiny.axes {
-        let (first, last) = (f64::from(axis[0]), f64::from(axis[1]));
+        let (first, last) = (axis[0], axis[1]);
         for number in [first, 1.0 / (last - first), last, 0.0] {
             bytes.extend(number.to_le_bytes());
         }
     }
     bytes.extend([0; 8]);
     bytes.resize(704, 0);
-    // Rigid maps.
-    for value in tiny.sides[0].rigid_roll.iter().chain(&tiny.sides[0].rigid_vertical) {
+    // Rigid map.
+    for value in tiny.sides[0].rigid.as_flattened() {
         bytes.extend(value.to_le_bytes());
     }
     bytes.resize(768, 0);
@@ -120,8 +120,8 @@ fn says_what_is_wrong() {
     assert_eq!(message(0, b"\x7fELF"), "not a contact table: it begins with \"\\x7fELF\", not with \"FWT1\"");
     assert_eq!(message(4, &[2]), "table has format version 2, this program reads version 1");
     assert_eq!(message(16, &[0xff; 4]), "header length is 4294967295 bytes, at most 1772 fit");
-    assert_eq!(message(16, &[0xd5]), "header at byte 20 cannot be read");
-    assert_eq!(message(16, &[0xd7]), "header at byte 20 cannot be read");
+    assert_eq!(message(16, &[0xd4]), "header at byte 20 cannot be read");
+    assert_eq!(message(16, &[0xd6]), "header at byte 20 cannot be read");
     let gauge = 20 + 16 + 5 + 32;
     assert_eq!(message(gauge, &f64::NAN.to_le_bytes()), "header field gauge is NaN, plausible are 0.1 to 3");
     assert_eq!(message(gauge + 24, &[3]), "header describes a table of 2368 bytes, this one has 1792");
@@ -131,7 +131,7 @@ fn says_what_is_wrong() {
     let reciprocal = "lateral axis: node 1 has the reciprocal 1, its cell's width says otherwise";
     assert_eq!(message(536, &1.0_f64.to_le_bytes()), reciprocal);
     for parts in [0, 3, 17, 32, 255] {
-        let refinement = format!("rigid maps have {parts} parts in an interval of the yaw axis, not 1, 2, 4, 8 or 16");
+        let refinement = format!("rigid map has {parts} parts in an interval of the yaw axis, not 1, 2, 4, 8 or 16");
         assert_eq!(message(gauge + 24 + 8 + 1, &[parts]), refinement);
     }
     assert_eq!(message(640, &[1, 0]), "lateral axis: bin 0 leads to cell 1, its nodes say otherwise");
@@ -139,10 +139,10 @@ fn says_what_is_wrong() {
         message(704, &f32::INFINITY.to_le_bytes()),
         "rigid map value at byte 704 is inf, plausible are -0.125 to 0.125"
     );
-    assert_eq!(message(720, &2.0_f32.to_le_bytes()), "rigid map value at byte 720 is 2, plausible are -1 to 1");
+    assert_eq!(message(724, &2.0_f32.to_le_bytes()), "rigid map value at byte 724 is 2, plausible are -1 to 1");
     let lane = "record at byte 768 has 1 in lane 31, which allows no such value";
     assert_eq!(message(768 + 62, &[1, 0]), lane);
-    let first_scale = 20 + 0x01d6 - 1 - 240;
+    let first_scale = 20 + 0x01d5 - 1 - 240;
     let scale = "scale of indentation (right tread) has offset 3e-5 and step 0e0: the step must be above zero \
                  and no value beyond 1e-1";
     assert_eq!(message(first_scale + 4, &[0; 4]), scale);
@@ -165,12 +165,12 @@ fn writer_refuses_what_does_not_fit() {
     let record = table.sides[0].records.pop().unwrap();
     assert_eq!(write_image(&table.parts()).unwrap_err().to_string(), "records: 480 values, the axes need 512");
     table.sides[0].records.push(record);
-    table.sides[0].rigid_roll.push(0.0);
-    assert_eq!(write_image(&table.parts()).unwrap_err().to_string(), "rigid roll: 5 values, the axes need 4");
-    table.sides[0].rigid_roll.pop();
+    table.sides[0].rigid.push([0.0; 4]);
+    assert_eq!(write_image(&table.parts()).unwrap_err().to_string(), "rigid contacts: 20 values, the axes need 16");
+    table.sides[0].rigid.pop();
     table.axes[3] = vec![0.0];
     assert!(write_image(&table.parts()).unwrap_err().to_string().starts_with("vertical axis: 1 nodes"));
-    table.axes[3] = vec![0.0, 0.0001];
+    table.axes[3] = vec![0.0, f64::from(0.0001_f32)];
     table.sides[0].geometry.nominal_radius = 46.0;
     let message = write_image(&table.parts()).unwrap_err().to_string();
     assert_eq!(message, "table: header field geometry.nominal_radius (right) is 46, plausible are 0.05 to 2");

@@ -16,7 +16,7 @@ fn image() -> (Synthetic, Vec<u8>) {
 fn inside(table: &Synthetic, t: [f64; 4]) -> Coordinates {
     let [lateral, yaw, roll_offset, vertical] = std::array::from_fn(|i| {
         let axis = &table.axes[i];
-        let (a, b) = (f64::from(axis[0]), f64::from(axis[axis.len() - 1]));
+        let (a, b) = (axis[0], axis[axis.len() - 1]);
         a + t[i] * (b - a)
     });
     Coordinates { lateral, yaw, roll_offset, vertical }
@@ -26,7 +26,7 @@ fn inside(table: &Synthetic, t: [f64; 4]) -> Coordinates {
 fn nodes_give_the_stored_values_exactly() {
     let (source, image) = image();
     let table = ContactTable::new(&image).unwrap();
-    let axis = |i: usize| source.axes[i].iter().map(|x| f64::from(*x)).enumerate();
+    let axis = |i: usize| table.axis(AxisName::ALL[i]).nodes().enumerate();
     let mut nodes = 0;
     for (i, lateral) in axis(0) {
         for (j, yaw) in axis(1) {
@@ -84,7 +84,7 @@ fn outside_the_indentation_is_extrapolated_and_the_rest_clamped() {
     let delta = |at: &Coordinates| table.channels(Side::Right, at)[0][Channel::Indentation.index()];
     let inner = inside(&source, [0.3, 0.4, 0.6, 1.0]);
     for (end, next) in [(2, 1), (0, 1)] {
-        let (z_end, z_next) = (f64::from(source.axes[3][end]), f64::from(source.axes[3][next]));
+        let (z_end, z_next) = (source.axes[3][end], source.axes[3][next]);
         let at = |vertical: f64| Coordinates { vertical, ..inner };
         let beyond = at(z_end + 2.0 * (z_end - z_next));
         let line = f64::from(delta(&at(z_end))) + 2.0 * f64::from(delta(&at(z_end)) - delta(&at(z_next)));
@@ -255,7 +255,7 @@ proptest! {
             let x = [at.lateral, at.yaw, at.roll_offset, at.vertical];
             let names = [AxisName::Lateral, AxisName::Yaw, AxisName::RollOffset, AxisName::Vertical];
             let cell = table.axis(names[axis]).locate(x[axis]).cell;
-            let (a, b) = (f64::from(source.axes[axis][cell]), f64::from(source.axes[axis][cell + 1]));
+            let (a, b) = (source.axes[axis][cell], source.axes[axis][cell + 1]);
             let delta = |t: f64| {
                 let mut x = x;
                 x[axis] = a + t * (b - a);

@@ -5,12 +5,11 @@ use std::ops::Range;
 use std::path::Path;
 
 use flangeway::layout::{
-    CHECKSUM_AT, HEADER_AT, HEADER_LENGTH_AT, LENGTH_AT, MAGIC, MAGIC_AT, Sections, SideSections, VERSION, VERSION_AT,
-    checksum, refined,
+    CHECKSUM_AT, HEADER_AT, HEADER_LENGTH_AT, LENGTH_AT, MAGIC, MAGIC_AT, RIGID, Sections, SideSections, VERSION,
+    VERSION_AT, checksum, refined,
 };
 use flangeway::{
-    Axis, AxisCounts, AxisName, ContactTable, Header, LANES, MAX_BINS, NodeBytes, RigidMaps, Scale, bin_of,
-    bins_per_unit,
+    Axis, AxisCounts, AxisName, ContactTable, Header, LANES, MAX_BINS, NodeBytes, RigidMap, Scale, bin_start,
 };
 
 use crate::error::{Error, Result};
@@ -18,10 +17,10 @@ use crate::error::{Error, Result};
 /// Everything a table image is made of.
 #[derive(Debug, Clone, Copy)]
 pub struct ImageParts<'a> {
-    /// The header, with the rigid maps' refinement; its axis counts are filled in by [`write_image`].
+    /// The header, with the rigid map's refinement; its axis counts are filled in by [`write_image`].
     pub header: Header<'a>,
-    /// Nodes of the four axes in the order of [`AxisName::ALL`], m or rad.
-    pub axes: [&'a [f32]; 4],
+    /// Nodes of the four axes in the order of [`AxisName::ALL`], m or rad; see [`OwnedAxis::new`].
+    pub axes: [&'a [f64]; 4],
     /// Data of the right side.
     pub right: SideParts<'a>,
     /// Data of the left side, where the header has one.
@@ -31,10 +30,9 @@ pub struct ImageParts<'a> {
 /// Data of one side.
 #[derive(Debug, Clone, Copy)]
 pub struct SideParts<'a> {
-    /// Rigid roll, `[lateral][yaw]` over the refined axes, rad.
-    pub rigid_roll: &'a [f32],
-    /// Rigid vertical displacement, `[lateral][yaw][roll offset]` over the refined axes, m.
-    pub rigid_vertical: &'a [f32],
+    /// Rigid contacts, `[lateral][yaw]` over the refined axes: roll, rad, and the coefficients h0, h1, h2 of the height, m,
+    /// m/rad, m/rad².
+    pub rigid: &'a [[f32; 4]],
     /// Records, `[lateral][yaw][roll offset][vertical]` over the axes.
     pub records: &'a [[i16; LANES]],
 }
@@ -48,23 +46,20 @@ pub struct OwnedAxis {
 }
 
 impl OwnedAxis {
-    /// An axis with these nodes (m or rad) and the smallest search map that holds them.
+    /// An axis with these nodes (m or rad) and the fewest bins at whose beginnings they lie: every node a whole number of
+    /// bins from the first. `f32` cannot say so exactly; the axis has the exact places, a few units in the last place away.
     ///
     /// # Errors
-    /// Fewer than two nodes, nodes that do not increase strictly or are not plausible, or lie so unevenly that 4096
-    /// bins do not part them.
-    pub fn new(name: AxisName, nodes: &[f32]) -> Result<Self> {
+    /// Fewer than two nodes, nodes that do not increase strictly or are not plausible, or do not lie so with 4096 bins.
+    pub fn new(name: AxisName, nodes: &[f64]) -> Result<Self> {
+        let refused = |message: String| Error::field("", format!("{name} axis"), message);
         let map = bin_map(nodes).ok_or_else(|| {
-            let message =
-                format!("{} nodes do not increase strictly or lie too close for {MAX_BINS} bins", nodes.len());
-            Error::field("", format!("{name} axis"), message)
+            let what = "do not increase strictly or lie on no even lattice of";
+            refused(format!("{} nodes {what} up to {MAX_BINS} intervals", nodes.len()))
         })?;
-        let axis = Self {
-            name,
-            nodes: (0..nodes.len()).map(|i| node_bytes(nodes, i)).collect(),
-            map: map.iter().map(|cell| cell.to_le_bytes()).collect(),
-        };
-        Axis::new(name, &axis.nodes, &axis.map).map_err(|e| Error::field("", format!("{name} axis"), e.to_string()))?;
+        let axis =
+            Self { name, nodes: node_bytes(nodes, &map), map: map.iter().map(|cell| cell.to_le_bytes()).collect() };
+        Axis::new(name, &axis.nodes, &axis.map).map_err(|e| refused(e.to_string()))?;
         Ok(axis)
     }
 
@@ -89,76 +84,90 @@ impl OwnedAxis {
     }
 }
 
-/// A node as the image holds it: its coordinate and the reciprocal of the distance to the next, 0 at the last.
-fn node_bytes(nodes: &[f32], index: usize) -> NodeBytes {
-    let at = f64::from(nodes[index]);
-    let reciprocal = nodes.get(index + 1).map_or(0.0, |next| 1.0 / (f64::from(*next) - at));
-    [at, reciprocal].map(f64::to_le_bytes)
+/// Nodes as the image holds them: the coordinate, where a bin begins that leads to another cell than the one before, and
+/// the reciprocal of the distance to the next node, 0 at the last.
+fn node_bytes(nodes: &[f64], map: &[u16]) -> Vec<NodeBytes> {
+    let [first, last] = [nodes[0], nodes[nodes.len() - 1]];
+    let begins = |bin: &usize| *bin == 0 || map[*bin] != map[bin - 1];
+    let starts = (0..map.len()).filter(begins).map(|bin| bin_start(first, last, map.len(), bin));
+    let exact: Vec<f64> = starts.chain([last]).collect();
+    let reciprocal = |i: usize| exact.get(i + 1).map_or(0.0, |next| 1.0 / (next - exact[i]));
+    exact.iter().enumerate().map(|(i, at)| [*at, reciprocal(i)].map(f64::to_le_bytes)).collect()
 }
 
-/// Smallest map of uniform bins to cells such that no bin holds two inner nodes; none if there is none.
-fn bin_map(nodes: &[f32]) -> Option<Vec<u16>> {
+/// Rounding of nodes that were halved again and again, and of the ends, in units of the largest magnitude.
+const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
+
+/// Cells of the fewest bins such that each inner node lies where one begins, but for rounding; none if there are none.
+fn bin_map(nodes: &[f64]) -> Option<Vec<u16>> {
     let [first, inner @ .., last] = nodes else { return None };
-    if nodes.len() > MAX_BINS + 2 || !nodes.is_sorted_by(|a, b| a < b) {
+    if nodes.len() > MAX_BINS + 1 || !nodes.is_sorted_by(|a, b| a < b) {
         return None;
     }
-    let (first, last) = (f64::from(*first), f64::from(*last));
-    (inner.len().max(1)..=MAX_BINS).find_map(|bins| {
-        let scale = bins_per_unit(first, last, bins);
-        let found: Vec<usize> = inner.iter().map(|x| bin_of(f64::from(*x), first, scale, bins)).collect();
-        found.is_sorted_by(|a, b| a < b).then(|| {
-            // The cell at a bin's start: the number of inner nodes in the bins before.
-            (0..bins).map(|bin| u16::try_from(found.partition_point(|b| *b < bin)).unwrap_or(u16::MAX)).collect()
-        })
+    let (first, last) = (*first, *last);
+    let rounding = ROUNDING * first.abs().max(last.abs());
+    let bins = (nodes.len() - 1..=MAX_BINS).take_while(|bins| (last - first) / *bins as f64 > 8.0 * rounding);
+    let starts = |bins: usize| {
+        let start = |x: &f64| {
+            let bin = libm::rint((x - first) / (last - first) * bins as f64) as usize;
+            ((bin_start(first, last, bins, bin) - *x).abs() <= rounding && bin < bins).then_some(bin)
+        };
+        inner.iter().map(start).collect::<Option<Vec<usize>>>().filter(|starts| starts.is_sorted_by(|a, b| a < b))
+    };
+    { bins }.find_map(|bins| {
+        let starts = starts(bins)?;
+        // The cell of a bin: the number of inner nodes up to its beginning.
+        Some((0..bins).map(|bin| u16::try_from(starts.partition_point(|b| *b <= bin)).unwrap_or(u16::MAX)).collect())
     })
 }
 
-/// Rigid maps in the image's form, for sampling with the kernel's own interpolation.
+/// A rigid map in the image's form, for sampling with the kernel's own interpolation.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct OwnedRigidMaps {
+pub struct OwnedRigidMap {
     axes: [OwnedAxis; 3],
-    refinement: [u8; 3],
-    roll: Vec<[u8; 4]>,
-    vertical: Vec<[u8; 4]>,
+    refinement: [u8; 2],
+    nodes: Vec<[u8; RIGID]>,
 }
 
-impl OwnedRigidMaps {
-    /// Maps over the records' axes (lateral, yaw, roll offset) with every interval divided into so many parts:
-    /// `roll[lateral][yaw]`, rad, and `vertical[lateral][yaw][roll offset]`, m.
+impl OwnedRigidMap {
+    /// A map over the records' axes (lateral, yaw, roll offset), the intervals of the first two divided into so many parts:
+    /// nodes as in [`SideParts`].
     ///
     /// # Errors
-    /// Bad axes, or maps whose lengths do not fit them.
-    pub fn new(axes: [&[f32]; 3], refinement: [u8; 3], roll: &[f32], vertical: &[f32]) -> Result<Self> {
+    /// Bad axes, or nodes whose number does not fit them.
+    pub fn new(axes: [&[f64]; 3], refinement: [u8; 2], nodes: &[[f32; 4]]) -> Result<Self> {
         let [lateral, yaw, roll_offset] = axes;
-        let maps = Self {
+        let bytes = |node: &[f32; 4]| {
+            let mut bytes = [0; RIGID];
+            bytes.as_chunks_mut().0.copy_from_slice(&node.map(f32::to_le_bytes));
+            bytes
+        };
+        let map = Self {
             axes: [
                 OwnedAxis::new(AxisName::Lateral, lateral)?,
                 OwnedAxis::new(AxisName::Yaw, yaw)?,
                 OwnedAxis::new(AxisName::RollOffset, roll_offset)?,
             ],
             refinement,
-            roll: roll.iter().map(|x| x.to_le_bytes()).collect(),
-            vertical: vertical.iter().map(|x| x.to_le_bytes()).collect(),
+            nodes: nodes.iter().map(bytes).collect(),
         };
-        let [l, y, r] = refinement;
-        let plane = refined(lateral.len(), l) * refined(yaw.len(), y);
-        let needed = plane * (1 + refined(roll_offset.len(), r));
-        match maps.try_view() {
-            Some(_) => Ok(maps),
-            None => Err(lengths("rigid maps", roll.len() + vertical.len(), needed)),
+        let [l, y] = refinement;
+        match map.try_view() {
+            Some(_) => Ok(map),
+            None => Err(lengths("rigid contacts", nodes.len(), refined(lateral.len(), l) * refined(yaw.len(), y))),
         }
     }
 
-    fn try_view(&self) -> Option<RigidMaps<'_>> {
-        RigidMaps::new(self.axes.each_ref().map(OwnedAxis::view), self.refinement, &self.roll, &self.vertical)
+    fn try_view(&self) -> Option<RigidMap<'_>> {
+        RigidMap::new(self.axes.each_ref().map(OwnedAxis::view), self.refinement, &self.nodes)
     }
 
-    /// The kernel's view of these maps.
+    /// The kernel's view of this map.
     ///
     /// # Panics
     /// Never: the constructor has made the same view.
     #[must_use]
-    pub fn view(&self) -> RigidMaps<'_> {
+    pub fn view(&self) -> RigidMap<'_> {
         self.try_view().expect("checked by the constructor")
     }
 }
@@ -210,8 +219,7 @@ pub fn write_image(parts: &ImageParts<'_>) -> Result<Vec<u8>> {
 }
 
 fn write_side(image: &mut [u8], place: &SideSections, data: &SideParts<'_>) -> Result<()> {
-    fill(image, &place.rigid_roll, "rigid roll", data.rigid_roll.iter().map(|x| x.to_le_bytes()))?;
-    fill(image, &place.rigid_vertical, "rigid vertical", data.rigid_vertical.iter().map(|x| x.to_le_bytes()))?;
+    fill(image, &place.rigid, "rigid contacts", data.rigid.as_flattened().iter().map(|x| x.to_le_bytes()))?;
     fill(image, &place.records, "records", data.records.as_flattened().iter().map(|q| q.to_le_bytes()))
 }
 

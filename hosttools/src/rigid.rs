@@ -50,8 +50,9 @@ fn rest(pair: &Pair, yaw: f64, lateral: impl Fn(f64) -> f64) -> Option<Rigid> {
     let touch = |side: Side, roll: f64, near: Option<f64>| {
         let canonical = Pose { lateral: lateral(roll), yaw, vertical: 0.0, roll }.canonical(side).pose;
         let (vertical, point) = pair.column(side, &canonical).touching(near)?;
-        // How fast the lateral position follows the roll; the mirror turns the signs of both.
-        let follows = (lateral(roll + 1e-6) - lateral(roll)) / 1e-6;
+        // How fast the lateral position follows the roll; the mirror turns the signs of both. By a central difference,
+        // so that the mirrored search takes the mirrored steps to the last bit.
+        let follows = (lateral(roll + 1e-6) - lateral(roll - 1e-6)) / 2e-6;
         Some((vertical, point, side.sign() * touching_slope(&point, canonical.yaw, follows)))
     };
     let (mut low, mut high) = (-WIDEST_ROLL, WIDEST_ROLL);

@@ -12,6 +12,7 @@
 use core::sync::atomic::{Ordering, compiler_fence};
 
 use crate::blend::{BLOCK, Cell, Edges, FINE, FINE_STEP, LaneScales, Lanes, edges, float, fractions, weights};
+use crate::channel::LANES;
 use crate::layout::RECORD;
 
 /// Lanes in a word.
@@ -34,8 +35,11 @@ const _: () = {
 
 /// [`portable`](crate::blend::portable) by words.
 #[inline(always)]
-pub(crate) fn blend(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales, lanes: &mut Lanes) {
-    let edges = edges(records, cell);
+pub(crate) fn blend(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales) -> Option<Lanes> {
+    let edges = edges(records, cell)?;
+    // To be written over. Of a number that the compiler does not know to be zero: it would call a routine, which takes
+    // several times as long as storing them.
+    let mut lanes = Lanes([core::hint::black_box(0.0); LANES]);
     let weights = weights(cell);
     let weights = [weights.map(|w| i32::from(w.coarse)), weights.map(|w| i32::from(w.fine))];
     let scales = scales.offsets.as_chunks().0.iter().zip(scales.steps.as_chunks().0);
@@ -46,6 +50,7 @@ pub(crate) fn blend(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales, 
         // Keeps the compiler from interleaving turns, which would spill registers. It costs nothing.
         compiler_fence(Ordering::SeqCst);
     }
+    Some(lanes)
 }
 
 /// Block B of a turn's: offset + step (base + t rise), see [`portable`](crate::blend::portable).
@@ -83,7 +88,7 @@ fn sums<const B: usize>(edges: &Edges<'_>, weights: &[i32; 8], turn: usize) -> [
     let mut sums = [[0; BLOCK]; 2];
     for (nodes, weight) in edges.iter().zip(weights) {
         // From the turn's lanes at the lower node to those at the upper one, at fixed distances from one place.
-        let span = nodes.as_flattened().get(TURN_BYTES * turn..).and_then(<[_]>::first_chunk);
+        let span = nodes.get(TURN_BYTES * turn..).and_then(<[_]>::first_chunk);
         let span: &[u8; RECORD + TURN_BYTES] = span.unwrap_or(&[0; RECORD + TURN_BYTES]);
         for (node, sums) in sums.iter_mut().enumerate() {
             for (word, sums) in sums.as_chunks_mut::<HALVES>().0.iter_mut().enumerate() {

@@ -74,71 +74,62 @@ pub struct Place {
 /// A node in the image: its coordinate and the reciprocal of the distance to the next node (0 at the last), `f64`.
 pub type NodeBytes = [[u8; 8]; 2];
 
-/// Nodes for a cell that a checked axis does not have.
-const NOTHING: &[NodeBytes; 2] = &[[[0; 8]; 2]; 2];
+/// A node for a cell that a checked axis does not have.
+const NOTHING: &NodeBytes = &[[0; 8]; 2];
+
+/// Least width of a bin in units of the axis' largest magnitude, 2⁻²²: rounding then moves a coordinate by less than 2⁻²⁸
+/// of its cell, which is less than the weights can tell.
+const LEAST_BIN: f64 = 1.0 / 4_194_304.0;
 
 /// An axis, read in place: its nodes, and the map of uniform bins to cells by which a cell is found in constant time.
 ///
-/// Bins divide first node to last node evenly, as many as it takes that none holds two inner nodes. `map[bin]` is the
-/// number of inner nodes in the bins before, which is the cell at the bin's start; one comparison with the only node
-/// the bin may hold does the rest. Both writer and reader find a node's bin by [`bin_of`]: it is monotonic in floating
-/// point, so the search is exact however its products round. The cost is the same for every coordinate and spacing.
+/// Bins divide first node to last node evenly, and every node lies where a bin begins, so a bin lies in one cell:
+/// `map[bin]` is that cell. The cost is the same for every coordinate and spacing.
 #[derive(Clone, Copy)]
 pub struct Axis<'a> {
     nodes: &'a [NodeBytes],
     map: &'a [[u8; 2]],
     first: f64,
     last: f64,
-    /// The largest number below `last`: a coordinate limited to it never lies beyond the last cell.
-    below_last: f64,
     bins_per_unit: f64,
     last_bin: f64,
 }
 
-/// Bin of coordinate `x` on an axis that begins at `first`: floor((x - first) bins_per_unit), within 0..bins.
-#[inline]
-#[must_use]
-pub fn bin_of(x: f64, first: f64, bins_per_unit: f64, bins: usize) -> usize {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the cast saturates, and a negative product is bin 0"
-    )]
-    let bin = ((x - first) * bins_per_unit) as usize;
-    bin.min(bins.saturating_sub(1))
-}
-
-/// Bins per unit of an axis from `first` to `last`.
+/// Where a bin begins on an axis from `first` to `last`: first + bin ((last - first) / bins). Inner nodes are such numbers.
 #[inline]
 #[must_use]
 #[expect(clippy::cast_precision_loss, reason = "at most 4096 bins")]
-pub fn bins_per_unit(first: f64, last: f64, bins: usize) -> f64 {
-    bins as f64 / (last - first)
+pub fn bin_start(first: f64, last: f64, bins: usize, bin: usize) -> f64 {
+    first + bin as f64 * ((last - first) / bins as f64)
 }
 
 impl<'a> Axis<'a> {
     /// None yet.
     pub(crate) const EMPTY: Self =
-        Self { nodes: &[], map: &[], first: 0.0, last: 0.0, below_last: 0.0, bins_per_unit: 0.0, last_bin: 0.0 };
+        Self { nodes: &[], map: &[], first: 0.0, last: 0.0, bins_per_unit: 0.0, last_bin: 0.0 };
 
     /// An axis over little-endian nodes and `u16` bins.
     ///
     /// # Errors
-    /// Fewer than two nodes, no bins or too many, nodes that are not strictly increasing `f32` within
+    /// Fewer than two nodes, no bins, too many or too narrow ones, nodes that do not increase strictly within
     /// [`AxisName::bounds`], reciprocals or bins that do not fit the nodes.
     pub fn new(name: AxisName, nodes: &'a [NodeBytes], map: &'a [[u8; 2]]) -> Result<Self, TableError> {
         let counts = TableError::AxisCount { axis: name, nodes: count(nodes.len()), bins: count(map.len()) };
-        if nodes.len() < 2 || nodes.len() > MAX_BINS + 2 || map.is_empty() || map.len() > MAX_BINS {
+        if nodes.len() < 2 || nodes.len() > MAX_BINS + 1 || map.is_empty() || map.len() > MAX_BINS {
             return Err(counts);
         }
         let (least, largest) = name.bounds();
-        let mut before = f32::NEG_INFINITY;
+        let mut before = f64::NEG_INFINITY;
         for (index, bytes) in nodes.iter().enumerate() {
-            let (exact, value) = (coordinate(bytes), single(coordinate(bytes)));
-            // A comparison with NaN is false.
-            let good = value > before && value >= least && value <= largest && f64::from(value) == exact;
+            let value = coordinate(bytes);
+            // A comparison with NaN is false. The ends are what an `f32` can hold, so the axis has a length.
+            let inner = index > 0 && index + 1 < nodes.len();
+            let good = value > before
+                && value >= f64::from(least)
+                && value <= f64::from(largest)
+                && (inner || f64::from(single(value)) == value);
             if !good {
-                return Err(TableError::AxisNode { axis: name, index, value });
+                return Err(TableError::AxisNode { axis: name, index, value: single(value) });
             }
             before = value;
         }
@@ -149,46 +140,39 @@ impl<'a> Axis<'a> {
         let mut axis = Self { nodes, map, ..Self::EMPTY };
         axis.first = axis.node(0);
         axis.last = axis.node(nodes.len() - 1);
-        axis.below_last = axis.last.next_down();
-        axis.bins_per_unit = bins_per_unit(axis.first, axis.last, map.len());
-        axis.last_bin = f64::from(count(map.len() - 1));
+        let bins = f64::from(count(map.len()));
+        let length = axis.last - axis.first;
+        if length < bins * LEAST_BIN * axis.first.abs().max(axis.last.abs()) {
+            return Err(counts);
+        }
+        axis.bins_per_unit = bins / length;
+        axis.last_bin = bins - 1.0;
         axis.check_bins(name)?;
         Ok(axis)
     }
 
-    /// Every bin leads to the cell at its start and holds at most one inner node.
+    /// Every inner node lies where a bin begins, and every bin leads to its cell.
     fn check_bins(&self, name: AxisName) -> Result<(), TableError> {
         let inner_end = self.nodes.len() - 1;
-        let mut next = 1; // the first inner node not in the bins before
+        let mut cell = 0;
         for (index, bytes) in self.map.iter().enumerate() {
             let found = u16::from_le_bytes(*bytes);
-            let mut inside = 0;
-            let start = next;
-            while next < inner_end && self.bin(self.node(next)) == index {
-                next += 1;
-                inside += 1;
-            }
-            if usize::from(found) != start - 1 || inside > 1 {
+            let start = bin_start(self.first, self.last, self.map.len(), index);
+            cell += usize::from(cell + 1 < inner_end && self.node(cell + 1).to_bits() == start.to_bits());
+            let missed = index + 1 == self.map.len() && cell + 1 < inner_end;
+            if usize::from(found) != cell || missed {
                 return Err(TableError::AxisBin { axis: name, index, found });
             }
         }
         Ok(())
     }
 
+    /// Cell of a bin; the cell's lower node and the reciprocal of its width.
     #[inline(always)]
-    fn bin(&self, x: f64) -> usize {
-        bin_of(x, self.first, self.bins_per_unit, self.map.len())
-    }
-
-    /// Cell of a coordinate below the last node, from its bin; the cell's lower node and the reciprocal of its width.
-    #[inline(always)]
-    fn cell(&self, bin: usize, x: f64) -> (u32, Two) {
-        let at_start = u32::from(u16::from_le_bytes(self.map.get(bin).copied().unwrap_or_default()));
-        let index = at_start as usize;
-        let pair @ [_, next] = self.nodes.get(index..index + 2).and_then(<[_]>::first_chunk).unwrap_or(NOTHING);
-        let beyond = x >= coordinate(next);
-        let node = pair.get(usize::from(beyond)).unwrap_or(next);
-        (at_start + u32::from(beyond), Two::new(node.map(f64::from_le_bytes)))
+    fn cell(&self, bin: usize) -> (u32, Two) {
+        let cell = u32::from(u16::from_le_bytes(self.map.get(bin).copied().unwrap_or_default()));
+        let node = self.nodes.get(cell as usize).unwrap_or(NOTHING);
+        (cell, Two::new(node.map(f64::from_le_bytes)))
     }
 
     /// Number of nodes.
@@ -228,79 +212,91 @@ impl<'a> Axis<'a> {
     #[inline]
     #[must_use]
     pub fn locate(&self, x: f64) -> Place {
-        // The bin as in `bin_of`, limited before it is truncated: the same bin, in fewer instructions.
-        let position = at_most(at_least((x - self.first) * self.bins_per_unit, 0.0), self.last_bin);
-        let [bin, _] = Two::all(position).truncate();
-        let (cell, node) = self.cell(bin, at_most(x, self.below_last));
-        let [lower, per_unit] = node.numbers();
-        let unclamped = (x - lower) * per_unit;
-        let fraction = at_most(at_least(unclamped, 0.0), 1.0);
+        let places = AxisPair::new([*self; 2]).locate(Two::all(x));
+        let ([cell, _], [fraction, _]) = (places.cells, places.fraction.numbers());
+        let [unclamped, _] = places.unclamped().numbers();
         Place {
             cell: cell as usize,
-            fraction,
-            unclamped: at_most(at_least(unclamped, -EXTRAPOLATION_LIMIT), EXTRAPOLATION_LIMIT),
-            clamped: (x < self.first) | (x > self.last),
+            fraction: at_most(at_least(fraction, 0.0), 1.0),
+            unclamped,
+            clamped: places.clamped != 0,
         }
     }
-}
-
-/// A cell's number as `u32`.
-#[inline(always)]
-#[expect(clippy::cast_possible_truncation, reason = "nodes are counted by u16")]
-pub(crate) fn index(cell: usize) -> u32 {
-    cell as u32
 }
 
 /// Where two coordinates lie on their axes, see [`Place`].
 #[derive(Clone, Copy)]
 pub(crate) struct Places {
     pub(crate) cells: [u32; 2],
+    /// Clamped to 0..=1, but for rounding: within 2⁻²⁸ of it.
     pub(crate) fraction: Two,
+    /// How far the coordinates lie outside their axes, in widths of the first or last cell.
+    outside: Two,
     /// Bit i says whether coordinate i lies outside its axis.
     pub(crate) clamped: u8,
 }
 
-/// Two axes that are searched together, as [`Axis::locate`] searches one.
+impl Places {
+    /// The first cells, on no axis in particular.
+    #[cfg(test)]
+    pub(crate) fn first(fraction: [f64; 2]) -> Self {
+        Self { cells: [0; 2], fraction: Two::new(fraction), outside: Two::all(0.0), clamped: 0 }
+    }
+
+    /// The fractions not clamped, but to +-[`EXTRAPOLATION_LIMIT`].
+    #[inline(always)]
+    pub(crate) fn unclamped(&self) -> Two {
+        let limit = Two::all(EXTRAPOLATION_LIMIT);
+        (self.fraction + self.outside).at_least(Two::all(-EXTRAPOLATION_LIMIT)).at_most(limit)
+    }
+}
+
+/// Two axes that are searched together. Aligned, so that an operation may take its operand from memory.
 #[derive(Clone, Copy)]
+#[repr(C, align(16))]
 pub(crate) struct AxisPair<'a> {
-    axes: [Axis<'a>; 2],
     first: [f64; 2],
-    below_last: [f64; 2],
+    last: [f64; 2],
     bins_per_unit: [f64; 2],
     last_bin: [f64; 2],
+    axes: [Axis<'a>; 2],
 }
 
 impl<'a> AxisPair<'a> {
     /// None yet.
-    pub(crate) const EMPTY: Self = Self {
-        axes: [Axis::EMPTY; 2],
-        first: [0.0; 2],
-        below_last: [0.0; 2],
-        bins_per_unit: [0.0; 2],
-        last_bin: [0.0; 2],
-    };
+    pub(crate) const EMPTY: Self =
+        Self { axes: [Axis::EMPTY; 2], first: [0.0; 2], last: [0.0; 2], bins_per_unit: [0.0; 2], last_bin: [0.0; 2] };
 
     pub(crate) fn new(axes: [Axis<'a>; 2]) -> Self {
         Self {
             axes,
             first: axes.map(|axis| axis.first),
-            below_last: axes.map(|axis| axis.below_last),
+            last: axes.map(|axis| axis.last),
             bins_per_unit: axes.map(|axis| axis.bins_per_unit),
             last_bin: axes.map(|axis| axis.last_bin),
         }
     }
 
+    /// ```text
+    /// x'       = x, first at least, last at most
+    /// cell     = map[min(floor((x' - first) bins_per_unit), bins - 1)]
+    /// fraction = (x' - node[cell]) / (node[cell + 1] - node[cell])
+    /// ```
     #[inline(always)]
     pub(crate) fn locate(&self, x: Two) -> Places {
-        let bins = ((x - Two::new(self.first)) * Two::new(self.bins_per_unit)).at_least(Two::all(0.0));
-        let [bin_a, bin_b] = bins.at_most(Two::new(self.last_bin)).truncate();
-        let [x_a, x_b] = x.at_most(Two::new(self.below_last)).numbers();
+        let first = Two::new(self.first);
+        let inside = x.at_least(first).at_most(Two::new(self.last));
+        let position = (inside - first) * Two::new(self.bins_per_unit);
+        let [bin_a, bin_b] = position.at_most(Two::new(self.last_bin)).truncate();
         let [a, b] = &self.axes;
-        let ((cell_a, node_a), (cell_b, node_b)) = (a.cell(bin_a, x_a), b.cell(bin_b, x_b));
+        let ((cell_a, node_a), (cell_b, node_b)) = (a.cell(bin_a), b.cell(bin_b));
         let [lower, per_unit] = Two::transpose([node_a, node_b]);
-        let unclamped = (x - lower) * per_unit;
-        let fraction = unclamped.at_least(Two::all(0.0)).at_most(Two::all(1.0));
-        Places { cells: [cell_a, cell_b], fraction, clamped: fraction.differs(unclamped).bits() }
+        Places {
+            cells: [cell_a, cell_b],
+            fraction: (inside - lower) * per_unit,
+            outside: (x - inside) * per_unit,
+            clamped: inside.differs(x),
+        }
     }
 }
 
@@ -331,48 +327,55 @@ mod tests {
     use super::*;
     use std::vec::Vec;
 
-    fn bytes(nodes: &[f32], map: &[u16]) -> (Vec<NodeBytes>, Vec<[u8; 2]>) {
-        let reciprocal = |i: usize| nodes.get(i + 1).map_or(0.0, |next| 1.0 / (f64::from(*next) - f64::from(nodes[i])));
-        let node = |(i, x): (usize, &f32)| [f64::from(*x), reciprocal(i)].map(f64::to_le_bytes);
+    fn bytes(nodes: &[f64], map: &[u16]) -> (Vec<NodeBytes>, Vec<[u8; 2]>) {
+        let reciprocal = |i: usize| nodes.get(i + 1).map_or(0.0, |next| 1.0 / (*next - nodes[i]));
+        let node = |(i, x): (usize, &f64)| [*x, reciprocal(i)].map(f64::to_le_bytes);
         (nodes.iter().enumerate().map(node).collect(), map.iter().map(|x| x.to_le_bytes()).collect())
     }
 
     #[test]
     fn finds_cells_between_uneven_nodes() {
-        // Range 0.08 in 4 bins of 0.02: 0.01 lies in bin 0, 0.03 in bin 1.
-        let (nodes, map) = bytes(&[0.0, 0.01, 0.03, 0.08], &[0, 1, 2, 2]);
+        // Range 1/16 in 8 bins.
+        let (nodes, map) = bytes(&[0.0, 1.0, 3.0, 8.0].map(|k| k / 128.0), &[0, 1, 1, 2, 2, 2, 2, 2]);
         let axis = Axis::new(AxisName::Yaw, &nodes, &map).unwrap();
-        for (x, cell) in [(0.0, 0), (0.009, 0), (0.0101, 1), (0.029, 1), (0.0301, 2), (0.08, 2), (1.0, 2), (-1.0, 0)] {
+        for (x, cell) in [(0.0, 0), (0.99, 0), (1.01, 1), (2.99, 1), (3.01, 2), (8.0, 2), (99.0, 2), (-1.0, 0)] {
+            let x = x / 128.0;
             assert_eq!(axis.locate(x).cell, cell, "{x}");
         }
         let end = axis.locate(axis.node(3));
         assert!((end.fraction - 1.0).abs() < 1e-15 && !end.clamped);
         let node = axis.locate(axis.node(2));
         assert_eq!((node.cell, node.fraction), (2, 0.0));
-        let outside = axis.locate(0.13);
+        let outside = axis.locate(13.0 / 128.0);
         assert!(outside.clamped && outside.fraction == 1.0 && (outside.unclamped - 2.0).abs() < 1e-6);
     }
 
     #[test]
     fn refuses_bad_nodes_and_bins() {
-        let check = |nodes: &[f32], map: &[u16]| {
+        let check = |nodes: &[f64], map: &[u16]| {
             let (nodes, map) = bytes(nodes, map);
             Axis::new(AxisName::Yaw, &nodes, &map).map(|_| ()).unwrap_err()
         };
         assert!(matches!(check(&[0.0], &[0]), TableError::AxisCount { nodes: 1, bins: 1, .. }));
-        assert!(matches!(check(&[0.0, 0.1], &[]), TableError::AxisCount { .. }));
+        assert!(matches!(check(&[0.0, 0.125], &[]), TableError::AxisCount { .. }));
         assert!(matches!(check(&[0.0, 0.0], &[0]), TableError::AxisNode { index: 1, .. }));
-        assert!(matches!(check(&[0.0, f32::NAN], &[0]), TableError::AxisNode { index: 1, .. }));
-        assert!(matches!(check(&[-0.1, 0.1], &[0]), TableError::AxisNode { index: 0, .. }));
+        assert!(matches!(check(&[0.0, f64::NAN], &[0]), TableError::AxisNode { index: 1, .. }));
+        assert!(matches!(check(&[-0.1, 0.125], &[0]), TableError::AxisNode { index: 0, .. }));
         assert!(matches!(check(&[0.0, 0.5], &[0]), TableError::AxisNode { index: 1, .. }));
-        let (mut nodes, map) = bytes(&[0.0, 0.1], &[0]);
+        let (mut nodes, map) = bytes(&[0.0, 0.125], &[0]);
         nodes[0][1] = 9.9_f64.to_le_bytes();
         let refused = Axis::new(AxisName::Yaw, &nodes, &map).map(|_| ()).unwrap_err();
         assert!(matches!(refused, TableError::AxisReciprocal { index: 0, found: 9.9, .. }));
         nodes[0] = [1e-300_f64, 10.0].map(f64::to_le_bytes);
         let refused = Axis::new(AxisName::Yaw, &nodes, &map).map(|_| ()).unwrap_err();
         assert!(matches!(refused, TableError::AxisNode { index: 0, .. }));
-        assert!(matches!(check(&[0.0, 0.05, 0.1], &[1]), TableError::AxisBin { index: 0, .. }));
-        assert!(matches!(check(&[0.0, 0.03, 0.06, 0.1], &[0]), TableError::AxisBin { index: 0, .. }));
+        assert!(matches!(check(&[0.0, 0.0625, 0.125], &[1]), TableError::AxisBin { index: 0, .. }));
+        assert!(matches!(check(&[0.0, 0.0625, 0.125], &[0, 0]), TableError::AxisBin { index: 1, .. }));
+        // A node inside a bin.
+        assert!(matches!(check(&[0.0, 0.062, 0.125], &[0, 1]), TableError::AxisBin { index: 1, .. }));
+        assert!(matches!(check(&[0.0, 0.0625, 0.125], &[0]), TableError::AxisBin { index: 0, .. }));
+        // Bins so narrow that rounding tells.
+        let neighbour = f64::from(0.125_f32.next_down());
+        assert!(matches!(check(&[neighbour, 0.125], &[0]), TableError::AxisCount { .. }));
     }
 }

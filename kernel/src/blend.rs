@@ -1,31 +1,31 @@
 //! Multilinear blend of the sixteen records around a place in the table, in integers.
 //!
 //! Sums of integers are exact, so their order does not matter: the portable path below and the vector instructions of
-//! [`simd`](crate::simd) and [`arm`](crate::arm) give the same bits. What is left for `f32` is the vertical fraction and the scale, the same
-//! few operations a lane in the same order everywhere.
+//! [`simd`](crate::simd) and [`arm`](crate::arm) give the same bits. What is left for `f32` is the vertical fraction and
+//! the scale, the same few operations a lane in the same order everywhere.
 //!
-//! The eight edges' weights are the differences of a running sum S that ends at 2²⁷, so their sum is exact however they
-//! round. Bits 12 to 27 of S give the *coarse* weights, which every lane is blended with; bits 0 to 11 the *fine* ones,
-//! which are added for the lanes that make the force ([`FINE`]): a step of 2⁻¹⁵ of the distance between two nodes would
-//! show in the slope of the force over 10 nm, and implicit integrators take such slopes. Weights are stored negative,
+//! The eight edges' weights are the differences of a running sum S that ends at -2²⁷, so their sum is exact however they
+//! round. The *coarse* weights, which every lane is blended with, are those of floor(S / 2¹²); the *fine* ones, of the 12
+//! bits below, are added for the lanes that make the force ([`FINE`]): a step of 2⁻¹⁵ of the distance between two nodes
+//! would show in the slope of the force over 10 nm, and implicit integrators take such slopes. Weights are negative,
 //! because -32768 fits an `i16` and 32768 does not.
 //!
 //! Measured against the same blend in `f64` over random records and weights (a test sweeps it), in quantisation steps:
-//! lanes with fine weights at most 0.0077, rms 0.0008; all others at most 5.1, rms 0.72, if neighbours differ by the
+//! lanes with fine weights at most 0.0078, rms 0.0008; all others at most 5.1, rms 0.72, if neighbours differ by the
 //! whole range of `i16`, and in proportion less if they differ less.
 
-use crate::axis::{Place, Places, index};
+use crate::axis::Places;
 use crate::channel::{Channel, LANES, SLOTS, Scales, Slot};
-use crate::corners::eight_pairs;
+use crate::corners::eight;
 use crate::layout::RECORD;
-use crate::math::{Two, single};
+use crate::math::{Quad, Two, single};
 
 /// Lanes of a block: a 128-bit vector of `i32` or `f32`.
 pub(crate) const BLOCK: usize = 4;
 /// Bits of the fine weights.
 pub(crate) const FINE_BITS: u32 = 12;
-/// Sum of all weights, 2²⁷.
-const ONE: f64 = 134_217_728.0;
+/// Sum of all weights, -2²⁷.
+const ONE: f64 = -134_217_728.0;
 /// One step of the fine weights in steps of the coarse ones, 2⁻¹².
 pub(crate) const FINE_STEP: f32 = 1.0 / 4096.0;
 /// One step of a record in steps of a blended lane, -2⁻¹⁵, negative as the weights are.
@@ -53,13 +53,6 @@ pub(crate) struct Lanes(pub(crate) [f32; LANES]);
 
 impl Lanes {
     pub(crate) const ZERO: Self = Self([0.0; LANES]);
-
-    /// Lanes to be written over. On ARM of a number that the compiler does not know to be zero: it would call a routine,
-    /// which takes several times as long as storing them.
-    #[inline(always)]
-    pub(crate) fn any() -> Self {
-        if cfg!(target_arch = "arm") { Self([core::hint::black_box(0.0); LANES]) } else { Self::ZERO }
-    }
 }
 
 /// Scales of the lanes: value = offset + step * blended lane, the step divided by what the weights sum to.
@@ -90,12 +83,12 @@ impl LaneScales {
 /// The cell of the records' grid that a coordinate lies in.
 #[derive(Clone, Copy)]
 pub(crate) struct Cell {
-    /// The cell's first record.
+    /// Where the cell's first record begins, bytes.
     base: u32,
-    /// Records from one node to the next along lateral, yaw and roll offset.
+    /// Bytes from one node to the next along lateral, yaw and roll offset.
     strides: [u32; 3],
-    /// Running sum of the edges' weights, the last one 2²⁷.
-    pub(crate) sums: [Two; 4],
+    /// Running sum of the edges' weights, after edges 0, 2, 4, 6 and after edges 1, 3, 5, 7; the last one is -2²⁷.
+    pub(crate) sums: [Quad; 2],
     /// Position between the vertical nodes, 0 to 1.
     pub(crate) fraction: f32,
     /// The same outside the axis, not clamped.
@@ -103,46 +96,46 @@ pub(crate) struct Cell {
 }
 
 impl Cell {
-    /// The cell at these places (lateral and yaw, roll offset, vertical) of a grid with these strides; vertical varies
-    /// fastest.
+    /// The cell at these places (lateral and yaw, roll offset and vertical) of a grid with these strides (bytes); vertical
+    /// varies fastest.
     #[inline(always)]
-    pub(crate) fn new(plane: &Places, roll: &Place, vertical: &Place, strides: [u32; 3]) -> Self {
-        let [lateral, yaw] = plane.cells;
+    pub(crate) fn new(plane: &Places, section: &Places, strides: [u32; 3]) -> Self {
+        let ([lateral, yaw], [roll, vertical]) = (plane.cells, section.cells);
         let [i, j, k] = strides;
-        let base = lateral * i + yaw * j + index(roll.cell) * k + index(vertical.cell);
+        let ([roll_fraction, fraction], [_, unclamped]) = (section.fraction.numbers(), section.unclamped().numbers());
         Self {
-            base,
+            base: lateral * i + yaw * j + roll * k + vertical * RECORD_BYTES,
             strides,
-            sums: running_sums(plane.fraction, roll.fraction),
-            fraction: single(vertical.fraction),
-            unclamped: single(vertical.unclamped),
+            sums: running_sums(plane.fraction, roll_fraction),
+            fraction: single(fraction),
+            unclamped: single(unclamped),
         }
     }
 }
 
-/// Running sum of the weights (1 - u or u)(1 - p or p)(1 - r or r) with r fastest, times 2²⁷, by splitting the whole in
+/// Running sum of the weights (1 - u or u)(1 - p or p)(1 - r or r) with r fastest, times -2²⁷, by splitting the whole in
 /// two along u, each half along p, each quarter along r.
 #[inline(always)]
-fn running_sums(plane: Two, roll: f64) -> [Two; 4] {
+fn running_sums(plane: Two, roll: f64) -> [Quad; 2] {
     let ([u, p], r) = ((Two::all(1.0) - plane).numbers(), 1.0 - roll);
     let half = ONE * u;
-    let (quarter, three_quarters) = (half * p, half + (ONE - half) * p);
-    let split = |begin: Two, end: Two| Two::transpose([begin + (end - begin) * Two::all(r), end]);
-    let [a, b] = split(Two::new([0.0, quarter]), Two::new([quarter, half]));
-    let [c, d] = split(Two::new([half, three_quarters]), Two::new([three_quarters, ONE]));
-    [a, b, c, d]
+    let (begin, end) = (Two::new([0.0, half]), Two::new([half, ONE]));
+    let quarters = begin + (end - begin) * Two::all(p);
+    let (begin, end) = (Quad::join(Two::transpose([begin, quarters])), Quad::join(Two::transpose([quarters, end])));
+    [begin + (end - begin) * Quad::all(r), end]
 }
 
-/// Records of nothing, for a cell that a checked table does not have.
-static NOTHING: [[u8; RECORD]; 2] = [[0; RECORD]; 2];
+/// Bytes of a record as `u32`.
+pub(crate) const RECORD_BYTES: u32 = 64;
+const _: () = assert!(RECORD_BYTES as usize == RECORD);
 
-/// Lower and upper record of each of a cell's vertical edges.
-pub(crate) type Edges<'a> = [&'a [[u8; RECORD]; 2]; 8];
+/// The two records of each of a cell's vertical edges, the lower one first.
+pub(crate) type Edges<'a> = [&'a [u8; 2 * RECORD]; 8];
 
-/// The records of a cell, roll offset fastest, then yaw, then lateral.
+/// The records of a cell, roll offset fastest, then yaw, then lateral; every cell of a checked table has them.
 #[inline(always)]
-pub(crate) fn edges<'a>(records: &'a [[u8; RECORD]], cell: &Cell) -> Edges<'a> {
-    eight_pairs(records, cell.base, cell.strides).unwrap_or([&NOTHING; 8])
+pub(crate) fn edges<'a>(records: &'a [[u8; RECORD]], cell: &Cell) -> Option<Edges<'a>> {
+    eight(records.as_flattened(), cell.base, cell.strides)
 }
 
 /// Fractions between the vertical nodes by lane of a block: not clamped for a slot's indentation.
@@ -164,7 +157,8 @@ pub(crate) fn fractions(cell: &Cell, block: usize) -> [f32; BLOCK] {
 /// value = offset + step q
 /// ```
 ///
-/// with t not clamped for the indentations, clamped for everything else.
+/// with t not clamped for the indentations, clamped for everything else. None for a cell beyond the records, which a
+/// checked table does not have.
 #[cfg_attr(
     all(
         any(target_arch = "arm", all(target_arch = "x86_64", target_feature = "sse2")),
@@ -174,9 +168,10 @@ pub(crate) fn fractions(cell: &Cell, block: usize) -> [f32; BLOCK] {
     expect(dead_code, reason = "see simd and arm")
 )]
 #[inline(always)]
-pub(crate) fn portable(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales, lanes: &mut Lanes) {
-    let edges = edges(records, cell);
+pub(crate) fn portable(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales) -> Option<Lanes> {
+    let edges = edges(records, cell)?;
     let weights = weights(cell);
+    let mut lanes = Lanes::ZERO;
     for (block, out) in lanes.0.as_chunks_mut::<BLOCK>().0.iter_mut().enumerate() {
         let fine = FINE.get(block).copied().unwrap_or_default();
         let t = fractions(cell, block);
@@ -193,6 +188,7 @@ pub(crate) fn portable(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScale
             *value = scale(&scales.offsets) + scale(&scales.steps) * (base + t * rise);
         }
     }
+    Some(lanes)
 }
 
 /// Weights of an edge.
@@ -206,12 +202,12 @@ pub(crate) struct EdgeWeights {
 #[inline(always)]
 pub(crate) fn weights(cell: &Cell) -> [EdgeWeights; 8] {
     let mut before = 0;
-    let [[a, b], [c, d], [e, f], [g, h]] = cell.sums.map(Two::numbers);
+    let [[[a, c], [e, g]], [[b, d], [f, h]]] = cell.sums.map(|sums| sums.halves().map(Two::numbers));
     [a, b, c, d, e, f, g, h].map(|sum| {
         let sum = whole(sum);
         let weights = EdgeWeights {
-            coarse: short((before >> FINE_BITS) - (sum >> FINE_BITS)),
-            fine: short((before & FINE_MASK) - (sum & FINE_MASK)),
+            coarse: short((sum >> FINE_BITS) - (before >> FINE_BITS)),
+            fine: short((sum & FINE_MASK) - (before & FINE_MASK)),
         };
         before = sum;
         weights
@@ -221,12 +217,10 @@ pub(crate) fn weights(cell: &Cell) -> [EdgeWeights; 8] {
 /// Sums of a lane over the edges, at their lower and upper nodes.
 #[inline(always)]
 fn sums(edges: &Edges<'_>, weights: &[EdgeWeights; 8], lane: usize, of: impl Fn(&EdgeWeights) -> i16) -> (i32, i32) {
-    let q = |record: &[u8; RECORD]| {
-        i32::from(i16::from_le_bytes(record.as_chunks().0.get(lane).copied().unwrap_or_default()))
-    };
-    edges.iter().zip(weights).fold((0, 0), |(lower, upper), ([low, high], weights)| {
+    edges.iter().zip(weights).fold((0, 0), |(lower, upper), (pair, weights)| {
+        let q = |lane| i32::from(i16::from_le_bytes(pair.as_chunks().0.get(lane).copied().unwrap_or_default()));
         let weight = i32::from(of(weights));
-        (lower + weight * q(low), upper + weight * q(high))
+        (lower + weight * q(lane), upper + weight * q(LANES + lane))
     })
 }
 
@@ -280,9 +274,7 @@ mod tests {
 
     /// The first cell of a grid of 2 x 2 x 2 x 2 nodes.
     fn first_cell([u, p, r, t]: [f64; 4]) -> Cell {
-        let place = |fraction| Place { cell: 0, fraction, unclamped: fraction, clamped: false };
-        let plane = Places { cells: [0; 2], fraction: Two::new([u, p]), clamped: 0 };
-        Cell::new(&plane, &place(r), &place(t), [8, 4, 2])
+        Cell::new(&Places::first([u, p]), &Places::first([r, t]), [8, 4, 2].map(|records| records * RECORD_BYTES))
     }
 
     /// The corners' product weights and the vertical lines, in `f64`.
@@ -311,19 +303,14 @@ mod tests {
                 .collect();
             let [u, p, r, t] = core::array::from_fn(|_| stream.fraction());
             let cell = first_cell([u, p, r, t]);
-            let mut lanes = Lanes::ZERO;
-            portable(&records, &cell, &scales, &mut lanes);
+            let lanes = portable(&records, &cell, &scales).unwrap();
             check(&records, [u, p, r, t], &lanes);
             let bits = |lanes: &Lanes| lanes.0.map(f32::to_bits);
-            let mut other = Lanes::ZERO;
-            crate::arm::blend(&records, &cell, &scales, &mut other);
-            assert_eq!(bits(&lanes), bits(&other));
+            assert_eq!(bits(&lanes), bits(&crate::arm::blend(&records, &cell, &scales).unwrap()));
             #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
             {
-                crate::simd::blend_128(&records, &cell, &scales, &mut other);
-                assert_eq!(bits(&lanes), bits(&other));
-                crate::simd::blend(&records, &cell, &scales, &mut other);
-                assert_eq!(bits(&lanes), bits(&other));
+                assert_eq!(bits(&lanes), bits(&crate::simd::blend_128(&records, &cell, &scales).unwrap()));
+                assert_eq!(bits(&lanes), bits(&crate::simd::blend(&records, &cell, &scales).unwrap()));
             }
         }
     }
@@ -348,7 +335,7 @@ mod tests {
     /// Measured errors in quantisation steps, rounded up; the module's documentation quotes them.
     const COARSE_ERROR: f64 = 5.1;
     const COARSE_RMS: f64 = 0.72;
-    const FINE_ERROR: f64 = 0.0077;
+    const FINE_ERROR: f64 = 0.0078;
     const FINE_RMS: f64 = 0.0008;
 
     #[test]
@@ -361,8 +348,7 @@ mod tests {
             for _ in 0..1000 {
                 let [u, p, r, t] = core::array::from_fn(|_| stream.fraction());
                 let cell = first_cell([u, p, r, t]);
-                let mut lanes = Lanes::ZERO;
-                portable(&[record; 16], &cell, &scales, &mut lanes);
+                let lanes = portable(&[record; 16], &cell, &scales).unwrap();
                 assert_eq!(lanes.0, [f32::from(value); LANES]);
             }
         }

@@ -8,15 +8,14 @@ use crate::channel::{CONFORMAL_LANE, Channel, LANES, RESERVED_LANE, Slot};
 use crate::error::TableError;
 use crate::header::{Header, MAX_PARTS, SideHeader};
 use crate::layout::{
-    CHECKSUM_AT, HEADER_AT, HEADER_LENGTH_AT, HEADER_LIMIT, LENGTH_AT, MAGIC, MAGIC_AT, RECORD, Sections, VERSION,
-    VERSION_AT, checksum,
+    CHECKSUM_AT, HEADER_AT, HEADER_LENGTH_AT, HEADER_LIMIT, LENGTH_AT, MAGIC, MAGIC_AT, RECORD, RIGID, Sections,
+    VERSION, VERSION_AT, checksum,
 };
 use crate::pose::Side;
 
-/// Largest plausible rigid roll, rad.
-const RIGID_ROLL_LIMIT: f32 = 0.125;
-/// Largest plausible rigid vertical displacement, m.
-const RIGID_VERTICAL_LIMIT: f32 = 1.0;
+/// Largest plausible rigid roll, rad, and coefficients of the rigid height, m, m/rad, m/rad²: each term is at most 1 m at
+/// the largest roll offset.
+const RIGID_LIMITS: [f32; 4] = [0.125, 1.0, 8.0, 64.0];
 
 /// Prelude, length and checksum; returns the header's bytes.
 pub(crate) fn envelope(image: &[u8]) -> Result<&[u8], TableError> {
@@ -142,22 +141,14 @@ pub(crate) fn chunks<'a, const N: usize>(image: &'a [u8], section: &Range<usize>
     image.get(section.clone()).unwrap_or_default().as_chunks().0
 }
 
-/// The rigid roll map of a side.
-pub(crate) fn rigid_roll<'a>(image: &'a [u8], section: &Range<usize>) -> Result<&'a [[u8; 4]], TableError> {
-    rigid(image, section, RIGID_ROLL_LIMIT)
-}
-
-/// The rigid vertical map of a side.
-pub(crate) fn rigid_vertical<'a>(image: &'a [u8], section: &Range<usize>) -> Result<&'a [[u8; 4]], TableError> {
-    rigid(image, section, RIGID_VERTICAL_LIMIT)
-}
-
-fn rigid<'a>(image: &'a [u8], section: &Range<usize>, limit: f32) -> Result<&'a [[u8; 4]], TableError> {
+/// The rigid map of a side.
+pub(crate) fn rigid<'a>(image: &'a [u8], section: &Range<usize>) -> Result<&'a [[u8; RIGID]], TableError> {
     let map = chunks(image, section);
-    let values = section.clone().step_by(4).zip(map.iter().map(|bytes| f32::from_le_bytes(*bytes)));
-    for (offset, value) in values {
-        if value.is_nan() || value.abs() > limit {
-            return Err(TableError::RigidValue { offset, value, limit });
+    let values = section.clone().step_by(4).zip(map.as_flattened().as_chunks().0).zip(RIGID_LIMITS.iter().cycle());
+    for ((offset, bytes), limit) in values {
+        let value = f32::from_le_bytes(*bytes);
+        if value.is_nan() || value.abs() > *limit {
+            return Err(TableError::RigidValue { offset, value, limit: *limit });
         }
     }
     Ok(map)

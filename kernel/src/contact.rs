@@ -7,8 +7,8 @@ use crate::blend::Lanes;
 use crate::channel::{Channel, SLOTS, Slot};
 use crate::displacement::Attitude;
 use crate::flags::Flags;
-use crate::math::{Four, Two, single};
-use crate::pose::{Canonical, WheelGeometry};
+use crate::math::{Four, Quad, single};
+use crate::pose::{Side, WheelGeometry};
 
 /// One contact between wheel and rail, in the [track frame](crate#frame).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -115,37 +115,33 @@ impl<'a> IntoIterator for &'a Contacts {
     }
 }
 
-/// Size and place of a wheel, four times.
+/// Radius of a wheel and the factor of lateral positions and contact angles that mirrors back, four times.
 #[derive(Clone, Copy)]
 pub(crate) struct Wheel {
     radius: Four,
-    place: Four,
+    lateral_sign: Four,
 }
 
 impl Wheel {
     /// None yet.
-    pub(crate) const EMPTY: Self = Self { radius: Four::ZERO, place: Four::ZERO };
+    pub(crate) const EMPTY: Self = Self { radius: Four::ZERO, lateral_sign: Four::ZERO };
 
-    pub(crate) fn new(geometry: &WheelGeometry) -> Self {
+    pub(crate) fn new(geometry: &WheelGeometry, side: Side) -> Self {
         let all = |x: f64| Four::all(single(x));
-        Self { radius: all(geometry.nominal_radius), place: all(geometry.lateral_position) }
+        Self { radius: all(geometry.nominal_radius), lateral_sign: all(side.sign()) }
     }
 }
 
 /// What rebuilding needs beside the channels.
 pub(crate) struct Frame<'a> {
     pub(crate) wheel: &'a Wheel,
-    pub(crate) canonical: &'a Canonical,
+    /// Factor of longitudinal positions that mirrors back.
+    pub(crate) longitudinal_sign: f64,
     pub(crate) attitude: &'a Attitude,
     /// u + b and w: where the tape-circle point lies, m.
     pub(crate) place: [f64; 2],
-}
-
-/// Two numbers, each four times.
-#[inline(always)]
-fn both(numbers: [f64; 2]) -> [Four; 2] {
-    let [a, b] = Two::new(numbers).single();
-    [Four::all(a), Four::all(b)]
+    /// b cos φ - r0 sin φ: how far it is from the wheelset's centre, in the direction of the axle before roll, m.
+    pub(crate) arm: f64,
 }
 
 /// Contacts of the three slots and one that is not used, quantity by quantity.
@@ -173,12 +169,12 @@ fn rebuild(lanes: &Lanes, frame: &Frame<'_>) -> Candidates {
     let depth = indentation.at_least(zero);
     let root = depth.sqrt();
     let rolling_radius = frame.wheel.radius + radius_offset;
-    let [lateral_sign, longitudinal_sign] = both([frame.canonical.lateral_sign, frame.canonical.longitudinal_sign]);
+    let lateral_sign = frame.wheel.lateral_sign;
     let [x, y, z] = position(e, s, radius_offset, rolling_radius, frame);
     // N = C δ+ sqrt(δ+)
     let normal_force = c.at_least(zero) * (depth * root);
     Candidates {
-        first: [normal_force, indentation, longitudinal_sign * x, lateral_sign * y],
+        first: [normal_force, indentation, x, lateral_sign * y],
         second: [z, lateral_sign * angle, rolling_radius, s],
         third: [k.at_least(zero) * root, k_across.at_least(zero) * root, wheel_curvature, rail_curvature],
     }
@@ -191,34 +187,35 @@ fn of_slots(lanes: &Lanes, channel: Channel) -> Four {
     Four::load(lanes.0.get(start..start + 4).and_then(<[_]>::first_chunk).unwrap_or(&[0.0; 4]))
 }
 
-/// Contact point in the track frame of the canonical wheel.
+/// Contact point in the track frame of the canonical wheel, x mirrored back.
 ///
 /// In the wheelset's frame it is (e, b + s, sqrt(R² - e²)); with h = sqrt(R² - e²) - r0 written without cancellation,
 /// and the tape-circle point's place (u + b, w) known from the displacement, the rotation leaves only small terms:
 ///
 /// ```text
 /// h  = (R - r0) - e² / (R + sqrt(R² - e²))
-/// y' = (b + s) cos φ - (r0 + h) sin φ
-/// x  = e cos ψ - y' sin ψ
-/// y  = u + b + e sin ψ + cos ψ (s cos φ - h sin φ)
+/// k  = s cos φ - h sin φ
+/// x  = e cos ψ - (b cos φ - r0 sin φ + k) sin ψ
+/// y  = u + b + e sin ψ + k cos ψ
 /// z  = w + s sin φ + h cos φ
 /// ```
 #[inline(always)]
 fn position(e: Four, s: Four, radius_offset: Four, radius: Four, frame: &Frame<'_>) -> [Four; 3] {
-    let (b, r0) = (frame.wheel.place, frame.wheel.radius);
     let (psi, phi) = (&frame.attitude.yaw, &frame.attitude.roll);
-    let ([sin_psi, sin_phi], [cos_psi, cos_phi]) = (both([psi.sin, phi.sin]), both([psi.cos, phi.cos]));
-    let [place_y, place_z] = both(frame.place);
+    let [sin_psi, sin_phi, cos_psi, cos_phi] = Quad::new([psi.sin, phi.sin, psi.cos, phi.cos]).single().spread();
+    let [place_y, place_z] = frame.place;
+    let [place_y, place_z, arm, sign] =
+        Quad::new([place_y, place_z, frame.arm, frame.longitudinal_sign]).single().spread();
     // h = (R - r0) - e² / (R + sqrt(R² - e²))
     let e_squared = e * e;
     let h = radius_offset - e_squared / (radius + (radius * radius - e_squared).at_least(Four::all(0.0)).sqrt());
-    // y' = (b + s) cos φ - (r0 + h) sin φ
-    let turned = (b + s) * cos_phi - (r0 + h) * sin_phi;
+    // k = s cos φ - h sin φ
+    let k = s * cos_phi - h * sin_phi;
     [
-        // x = e cos ψ - y' sin ψ
-        e * cos_psi - turned * sin_psi,
-        // y = u + b + e sin ψ + cos ψ (s cos φ - h sin φ)
-        place_y + (e * sin_psi + cos_psi * (s * cos_phi - h * sin_phi)),
+        // x = e cos ψ - (b cos φ - r0 sin φ + k) sin ψ
+        sign * (e * cos_psi - (arm + k) * sin_psi),
+        // y = u + b + e sin ψ + k cos ψ
+        place_y + (e * sin_psi + k * cos_psi),
         // z = w + s sin φ + h cos φ
         place_z + (s * sin_phi + h * cos_phi),
     ]
@@ -251,7 +248,6 @@ impl Contacts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pose::{Pose, Side};
 
     fn tilted(angle: f32) -> Contact {
         Contact { angle, ..Contact::NONE }
@@ -283,9 +279,9 @@ mod tests {
     #[test]
     fn contacts_without_force_are_left_out() {
         let geometry = WheelGeometry { nominal_radius: 0.46, lateral_position: 0.75 };
-        let (wheel, attitude) = (Wheel::new(&geometry), Attitude::new(0.0, 0.0));
-        let canonical = Pose::default().canonical(Side::Right);
-        let frame = Frame { wheel: &wheel, canonical: &canonical, attitude: &attitude, place: [0.75, 0.0] };
+        let (wheel, attitude) = (Wheel::new(&geometry, Side::Right), Attitude::new(0.0, 0.0));
+        let place = [0.75, 0.0];
+        let frame = Frame { wheel: &wheel, longitudinal_sign: 1.0, attitude: &attitude, place, arm: 0.75 };
         for bits in 0..8_usize {
             let mut lanes = Lanes::ZERO;
             let carrying = || Slot::ALL.into_iter().filter(|slot| bits >> slot.index() & 1 == 1);

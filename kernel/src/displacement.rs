@@ -37,7 +37,8 @@ impl Attitude {
     /// frame. Its displacement from (0, b, 0), with 1 - cos written as the versine v so that nothing cancels:
     ///
     /// ```text
-    /// u - y = cos ψ (b cos φ - r0 sin φ) - b = -b (vψ + vφ - vψ vφ) - r0 cos ψ sin φ
+    /// g     = b - (b cos φ - r0 sin φ)       =  b vφ + r0 sin φ
+    /// u - y = cos ψ (b cos φ - r0 sin φ) - b = -(g + vψ (b - g))
     /// w - z = b sin φ + r0 cos φ - r0        =  b sin φ - r0 vφ
     /// ```
     #[inline]
@@ -45,12 +46,21 @@ impl Attitude {
     pub fn displacement(&self, geometry: &WheelGeometry) -> Displacement {
         let (b, r0) = (geometry.lateral_position, geometry.nominal_radius);
         let (psi, phi) = (&self.yaw, &self.roll);
+        let inwards = self.inwards(geometry);
         Displacement {
-            // -b (vψ + vφ - vψ vφ) - r0 cos ψ sin φ
-            lateral: -b * (psi.versine + phi.versine - psi.versine * phi.versine) - r0 * (psi.cos * phi.sin),
+            // -(g + vψ (b - g))
+            lateral: -(inwards + psi.versine * (b - inwards)),
             // b sin φ - r0 vφ
             vertical: b * phi.sin - r0 * phi.versine,
         }
+    }
+}
+
+impl Attitude {
+    /// How far roll alone moves the tape-circle point towards the wheelset's centre, g = b vφ + r0 sin φ, m.
+    #[inline(always)]
+    pub(crate) fn inwards(&self, geometry: &WheelGeometry) -> f64 {
+        geometry.lateral_position * self.roll.versine + geometry.nominal_radius * self.roll.sin
     }
 }
 

@@ -133,7 +133,7 @@ pub enum TableError {
         /// The cell it leads to.
         found: u16,
     },
-    /// The rigid maps divide an axis' intervals into other than 1, 2, 4, 8 or 16 parts.
+    /// The rigid map divides an axis' intervals into other than 1, 2, 4, 8 or 16 parts.
     Refinement {
         /// The axis.
         axis: AxisName,
@@ -211,7 +211,8 @@ impl fmt::Display for TableError {
             Self::AxisCount { axis, nodes, bins } => {
                 write!(
                     f,
-                    "{axis} axis has {nodes} nodes in {bins} bins: at least 2 nodes and 1 to 4096 bins are needed"
+                    "{axis} axis has {nodes} nodes in {bins} bins: at least 2 nodes and 1 to 4096 bins are needed, \
+                     none narrower than 2.4e-7 of the largest node"
                 )
             }
             Self::AxisNode { axis, index, value } => write!(
@@ -225,7 +226,7 @@ impl fmt::Display for TableError {
                 write!(f, "{axis} axis: bin {index} leads to cell {found}, its nodes say otherwise")
             }
             Self::Refinement { axis, parts } => {
-                write!(f, "rigid maps have {parts} parts in an interval of the {axis} axis, not 1, 2, 4, 8 or 16")
+                write!(f, "rigid map has {parts} parts in an interval of the {axis} axis, not 1, 2, 4, 8 or 16")
             }
             Self::RigidValue { offset, value, limit } => {
                 write!(f, "rigid map value at byte {offset} is {value}, plausible are -{limit} to {limit}")

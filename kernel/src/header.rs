@@ -14,7 +14,7 @@ pub struct AxisCounts {
     pub bins: u16,
 }
 
-/// Most parts that the rigid maps can divide an interval of an axis into.
+/// Most parts that the rigid map can divide an interval of an axis into.
 pub const MAX_PARTS: u8 = 16;
 
 /// Elastic constants of wheel and rail (the same for both).
@@ -87,9 +87,9 @@ pub struct Header<'a> {
     pub material: Material,
     /// Counts of the four axes in the order of [`AxisName::ALL`](crate::AxisName::ALL).
     pub axes: [AxisCounts; 4],
-    /// Parts that the rigid maps divide each interval of the lateral, yaw and roll offset axis into: a power of two,
-    /// at most [`MAX_PARTS`].
-    pub refinement: [u8; 3],
+    /// Parts that the rigid map divides each interval of the lateral and yaw axis into: a power of two, at most
+    /// [`MAX_PARTS`].
+    pub refinement: [u8; 2],
     /// Measured errors.
     pub errors: ErrorFigures,
     /// The right side.
@@ -141,7 +141,7 @@ impl<'a> Header<'a> {
         gauge: 0.0,
         material: Material { young_modulus: 0.0, poisson_ratio: 0.0 },
         axes: [AxisCounts { nodes: 0, bins: 0 }; 4],
-        refinement: [0; 3],
+        refinement: [0; 2],
         errors: ErrorFigures {
             samples: 0,
             seed: 0,
@@ -215,7 +215,7 @@ mod tests {
             gauge: 1.435,
             material: Material { young_modulus: 2.1e11, poisson_ratio: 0.28 },
             axes: [AxisCounts { nodes: 300, bins: 4000 }; 4],
-            refinement: [4, 2, 1],
+            refinement: [4, 2],
             errors: ErrorFigures { samples: 4000, seed: 1 << 40, force_p95: 0.01, ..ErrorFigures::default() },
             right: side,
             left: None,

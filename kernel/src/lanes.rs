@@ -21,6 +21,10 @@ pub(crate) struct Two([f64; 2]);
 #[derive(Clone, Copy)]
 pub(crate) struct Mask([bool; 2]);
 
+/// Four `f64`.
+#[derive(Clone, Copy)]
+pub(crate) struct Quad([f64; 4]);
+
 impl Four {
     /// Four zeros.
     pub(crate) const ZERO: Self = Self([0.0; 4]);
@@ -58,6 +62,12 @@ impl Four {
     pub(crate) fn above_zero(self) -> usize {
         let [a, b, c, d] = self.0.map(|x| usize::from(x > 0.0));
         a | b << 1 | c << 2 | d << 3
+    }
+
+    /// Each number four times.
+    #[inline(always)]
+    pub(crate) fn spread(self) -> [Self; 4] {
+        self.0.map(Self::all)
     }
 
     /// Rows as columns.
@@ -124,12 +134,6 @@ impl Two {
         self.0
     }
 
-    /// Rounded to `f32`.
-    #[inline(always)]
-    pub(crate) fn single(self) -> [f32; 2] {
-        self.0.map(single)
-    }
-
     /// The greater of each number and a bound; the bound for NaN.
     #[inline(always)]
     pub(crate) fn at_least(self, bound: Self) -> Self {
@@ -140,6 +144,12 @@ impl Two {
     #[inline(always)]
     pub(crate) fn at_most(self, bound: Self) -> Self {
         with2(self, bound, at_most)
+    }
+
+    /// Rounded to `f32`.
+    #[inline(always)]
+    pub(crate) fn single(self) -> [f32; 2] {
+        self.0.map(single)
     }
 
     #[inline(always)]
@@ -154,19 +164,19 @@ impl Two {
         Mask([a <= c, b <= d])
     }
 
-    /// Where two numbers differ.
-    #[inline(always)]
-    pub(crate) fn differs(self, other: Self) -> Mask {
-        let ([a, b], [c, d]) = (self.0, other.0);
-        Mask([a != c, b != d])
-    }
-
     /// These where the mask holds for both, zeros otherwise; without a branch.
     #[inline(always)]
     pub(crate) fn where_all(self, mask: Mask) -> Self {
         let [a, b] = mask.0;
         let mask = u64::from(a & b).wrapping_neg();
         Self(self.0.map(|x| f64::from_bits(x.to_bits() & mask)))
+    }
+
+    /// Bit i says whether numbers i differ.
+    #[inline(always)]
+    pub(crate) fn differs(self, other: Self) -> u8 {
+        let ([a, b], [c, d]) = (self.0, other.0);
+        u8::from(a != c) | u8::from(b != d) << 1
     }
 
     /// The integer parts of numbers from 0 to 2^31.
@@ -198,12 +208,53 @@ impl Mask {
         let ([a, b], [c, d]) = (self.0, other.0);
         Self([a & c, b & d])
     }
+}
 
-    /// Bit i says whether it holds for number i.
+impl Quad {
     #[inline(always)]
-    pub(crate) fn bits(self) -> u8 {
-        let [a, b] = self.0.map(u8::from);
-        a | b << 1
+    pub(crate) fn new(numbers: [f64; 4]) -> Self {
+        Self(numbers)
+    }
+
+    /// Four times the same.
+    #[inline(always)]
+    pub(crate) fn all(x: f64) -> Self {
+        Self([x; 4])
+    }
+
+    /// Four little-endian `f32`.
+    #[inline(always)]
+    pub(crate) fn of_singles(bytes: &[u8; 16]) -> Self {
+        let mut numbers = [0.0; 4];
+        for (number, bytes) in numbers.iter_mut().zip(bytes.as_chunks().0) {
+            *number = f64::from(f32::from_le_bytes(*bytes));
+        }
+        Self(numbers)
+    }
+
+    #[inline(always)]
+    pub(crate) fn join([low, high]: [Two; 2]) -> Self {
+        let ([a, b], [c, d]) = (low.0, high.0);
+        Self([a, b, c, d])
+    }
+
+    #[inline(always)]
+    pub(crate) fn halves(self) -> [Two; 2] {
+        let [a, b, c, d] = self.0;
+        [Two([a, b]), Two([c, d])]
+    }
+
+    /// Rounded to `f32`.
+    #[inline(always)]
+    pub(crate) fn single(self) -> Four {
+        Four(self.0.map(single))
+    }
+
+    /// Whether all are at most this large.
+    #[inline(always)]
+    pub(crate) fn all_within(self, limit: f64) -> bool {
+        let [a, b, c, d] = self.0.map(|x| x.abs() <= limit);
+        a & b & c & d
     }
 }
 
@@ -245,6 +296,36 @@ impl Div for Two {
     }
 }
 
+#[inline(always)]
+fn with_quad(a: Quad, b: Quad, f: impl Fn(f64, f64) -> f64) -> Quad {
+    let ([a0, a1, a2, a3], [b0, b1, b2, b3]) = (a.0, b.0);
+    Quad([f(a0, b0), f(a1, b1), f(a2, b2), f(a3, b3)])
+}
+
+impl Add for Quad {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        with_quad(self, other, |a, b| a + b)
+    }
+}
+
+impl Sub for Quad {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        with_quad(self, other, |a, b| a - b)
+    }
+}
+
+impl Mul for Quad {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        with_quad(self, other, |a, b| a * b)
+    }
+}
+
 #[cfg(all(test, target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
 mod tests {
     use super::*;
@@ -259,6 +340,13 @@ mod tests {
             for b in NUMBERS {
                 let (x, y) = (Two([a, b]), Two([b, 0.25]));
                 let (v, w) = (simd::Two::new([a, b]), simd::Two::new([b, 0.25]));
+                let (q, r) = (Quad::join([x, y]), simd::Quad::new([a, b, b, 0.25]));
+                let (p, t) = (Quad::all(b), simd::Quad::all(b));
+                let halves = |q: Quad, r: simd::Quad| {
+                    let ([x, y], [v, w]) = (q.halves(), r.halves());
+                    [(x, v), (y, w)]
+                };
+                let quads = [halves(q + p, r + t), halves(q - p, r - t), halves(q * p, r * t)];
                 let pairs = [
                     (x + y, v + w),
                     (x - y, v - w),
@@ -271,12 +359,14 @@ mod tests {
                     (Two::transpose([x, y])[0], simd::Two::transpose([v, w])[0]),
                     (Two::transpose([x, y])[1], simd::Two::transpose([v, w])[1]),
                 ];
-                for (index, (x, v)) in pairs.into_iter().enumerate() {
+                for (index, (x, v)) in pairs.into_iter().chain(quads.into_iter().flatten()).enumerate() {
                     let bits = |numbers: [f64; 2]| numbers.map(|x| if x.is_nan() { u64::MAX } else { x.to_bits() });
                     assert_eq!(bits(x.numbers()), bits(v.numbers()), "operation {index} of {a} and {b}");
                 }
-                assert_eq!(x.differs(y).bits(), v.differs(w).bits());
+                assert_eq!(x.differs(y), v.differs(w));
                 assert_eq!(x.single().map(f32::to_bits), v.single().map(f32::to_bits));
+                assert_eq!(q.single().numbers().map(f32::to_bits), r.single().numbers().map(f32::to_bits));
+                assert_eq!(q.all_within(1e9), r.all_within(1e9));
                 let limited = |x: f64| x.clamp(0.0, 4095.0);
                 let (x, v) = (Two([limited(a), limited(b)]), simd::Two::new([limited(a), limited(b)]));
                 assert_eq!(x.truncate(), v.truncate());
@@ -303,6 +393,13 @@ mod tests {
             }
         }
         assert_eq!(Four::load(&[1.0, 2.0, 3.0, 4.0]).numbers(), simd::Four::load(&[1.0, 2.0, 3.0, 4.0]).numbers());
+        let spread = Quad::new([1.0, 2.0, 3.0, 4.0]).single().spread().map(Four::numbers);
+        assert_eq!(spread, simd::Quad::new([1.0, 2.0, 3.0, 4.0]).single().spread().map(simd::Four::numbers));
+        assert_eq!(spread, [1.0, 2.0, 3.0, 4.0].map(|x| [x; 4]));
+        let bytes: [u8; 16] = core::array::from_fn(|i| [0x9a, 0x99, 0x59, 0x40, 0xcd, 0xcc, 0x4c, 0xbe][i % 8]);
+        let singles = Quad::of_singles(&bytes).halves().map(Two::numbers);
+        assert_eq!(singles, simd::Quad::of_singles(&bytes).halves().map(simd::Two::numbers));
+        assert_eq!(singles, [[f64::from(3.4_f32), f64::from(-0.2_f32)]; 2]);
         assert_eq!(Four::ZERO.numbers(), simd::Four::ZERO.numbers());
         assert_eq!(Two::new([2.0; 2]).numbers(), Two::all(2.0).numbers());
     }

@@ -29,6 +29,8 @@ pub const HEADER_LIMIT: usize = 65_536;
 pub const ALIGNMENT: usize = 64;
 /// Bytes of an axis node: its coordinate and the reciprocal of the distance to the next, `f64` each.
 pub const NODE: usize = 16;
+/// Bytes of a rigid contact: roll and the three coefficients of the height, `f32` each.
+pub const RIGID: usize = 16;
 /// Bytes of a record.
 pub const RECORD: usize = 64;
 
@@ -45,10 +47,8 @@ pub fn checksum(image: &[u8]) -> u32 {
 /// Sections of a side, as byte ranges; empty for a left side that mirrors the right one.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct SideSections {
-    /// `f32` rigid roll, `[lateral][yaw]`.
-    pub rigid_roll: Range<usize>,
-    /// `f32` rigid vertical displacement, `[lateral][yaw][roll offset]`.
-    pub rigid_vertical: Range<usize>,
+    /// Rigid contacts, `[lateral][yaw]`, [`RIGID`] bytes each.
+    pub rigid: Range<usize>,
     /// Records, `[lateral][yaw][roll offset][vertical]`, 64 bytes each.
     pub records: Range<usize>,
 }
@@ -62,7 +62,7 @@ pub struct Sections {
     pub bins: [Range<usize>; 4],
     /// Right and left side.
     pub sides: [SideSections; 2],
-    /// Zero bytes that align the sections: before the axes, before each side's rigid maps and its records.
+    /// Zero bytes that align the sections: before the axes, before each side's rigid map and its records.
     pub padding: [Range<usize>; 5],
     /// Bytes of the whole image.
     pub total: usize,
@@ -97,17 +97,16 @@ pub fn refined(nodes: usize, parts: u8) -> usize {
 }
 
 impl Sections {
-    /// Sections for a header of this length with these axes, the rigid maps' parts of an interval of the first three,
-    /// and one or two sides; none beyond 4 GiB.
+    /// Sections for a header of this length with these axes, the rigid map's parts of an interval of the first two, and
+    /// one or two sides; none beyond 4 GiB.
     #[must_use]
-    pub fn new(header_length: usize, axes: &[AxisCounts; 4], refinement: [u8; 3], sides: usize) -> Option<Self> {
+    pub fn new(header_length: usize, axes: &[AxisCounts; 4], refinement: [u8; 2], sides: usize) -> Option<Self> {
         let mut sections = Self::default();
         let mut cursor = Cursor(HEADER_AT.checked_add(header_length));
         let [lateral, yaw, roll, vertical] = axes.map(|axis| usize::from(axis.nodes));
-        let [lateral_parts, yaw_parts, roll_parts] = refinement;
+        let [lateral_parts, yaw_parts] = refinement;
         let (rigid_lateral, rigid_yaw) = (refined(lateral, lateral_parts), refined(yaw, yaw_parts));
-        let rigid_roll = refined(roll, roll_parts);
-        let [axes_gap, right_maps_gap, right_records_gap, left_maps_gap, left_records_gap] = &mut sections.padding;
+        let [axes_gap, right_map_gap, right_records_gap, left_map_gap, left_records_gap] = &mut sections.padding;
         *axes_gap = cursor.align();
         for (range, axis) in sections.nodes.iter_mut().zip(axes) {
             *range = cursor.take(NODE, &[usize::from(axis.nodes)]);
@@ -115,11 +114,10 @@ impl Sections {
         for (range, axis) in sections.bins.iter_mut().zip(axes) {
             *range = cursor.take(size_of::<u16>(), &[usize::from(axis.bins)]);
         }
-        let gaps = [(right_maps_gap, right_records_gap), (left_maps_gap, left_records_gap)];
-        for (side, (maps_gap, records_gap)) in sections.sides.iter_mut().zip(gaps).take(sides) {
-            *maps_gap = cursor.align();
-            side.rigid_roll = cursor.take(size_of::<f32>(), &[rigid_lateral, rigid_yaw]);
-            side.rigid_vertical = cursor.take(size_of::<f32>(), &[rigid_lateral, rigid_yaw, rigid_roll]);
+        let gaps = [(right_map_gap, right_records_gap), (left_map_gap, left_records_gap)];
+        for (side, (map_gap, records_gap)) in sections.sides.iter_mut().zip(gaps).take(sides) {
+            *map_gap = cursor.align();
+            side.rigid = cursor.take(RIGID, &[rigid_lateral, rigid_yaw]);
             *records_gap = cursor.align();
             side.records = cursor.take(RECORD, &[lateral, yaw, roll, vertical]);
         }
@@ -138,29 +136,29 @@ mod tests {
 
     #[test]
     fn sections_follow_each_other_aligned() {
-        let s = Sections::new(100, &counts([2, 2, 2, 3]), [2, 1, 1], 2).unwrap();
+        let s = Sections::new(100, &counts([2, 2, 2, 3]), [2, 1], 2).unwrap();
         assert_eq!(s.padding[0], 120..128);
         assert_eq!(s.nodes[0], 128..160);
         assert_eq!(s.nodes[3], 224..272);
         assert_eq!(s.bins[3], 278..280);
         assert_eq!(s.padding[1], 280..320);
-        assert_eq!(s.sides[0], SideSections { rigid_roll: 320..344, rigid_vertical: 344..392, records: 448..1984 });
+        assert_eq!(s.sides[0], SideSections { rigid: 320..416, records: 448..1984 });
         assert_eq!(s.sides[1].records, 2112..3648);
         assert_eq!(s.total, 3648);
-        assert_eq!(Sections::new(100, &counts([2, 2, 2, 3]), [2, 1, 1], 1).unwrap().total, 1984);
+        assert_eq!(Sections::new(100, &counts([2, 2, 2, 3]), [2, 1], 1).unwrap().total, 1984);
     }
 
     #[test]
     fn order_of_the_padding() {
-        let s = Sections::new(100, &counts([2, 2, 2, 3]), [2, 1, 1], 2).unwrap();
-        assert_eq!(s.padding, [120..128, 280..320, 392..448, 1984..1984, 2056..2112]);
+        let s = Sections::new(100, &counts([2, 2, 2, 3]), [2, 1], 2).unwrap();
+        assert_eq!(s.padding, [120..128, 280..320, 416..448, 1984..1984, 2080..2112]);
     }
 
     #[test]
     fn no_table_beyond_four_gibibytes() {
-        assert_eq!(Sections::new(100, &counts([4097; 4]), [1; 3], 1), None);
-        assert_eq!(Sections::new(100, &counts([u16::MAX; 4]), [16; 3], 2), None);
-        assert_eq!(Sections::new(usize::MAX, &counts([2; 4]), [1; 3], 1), None);
+        assert_eq!(Sections::new(100, &counts([4097; 4]), [1; 2], 1), None);
+        assert_eq!(Sections::new(100, &counts([u16::MAX; 4]), [16; 2], 2), None);
+        assert_eq!(Sections::new(usize::MAX, &counts([2; 4]), [1; 2], 1), None);
     }
 
     #[test]

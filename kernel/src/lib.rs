@@ -106,7 +106,7 @@ mod rigid;
 mod simd;
 mod table;
 
-pub use axis::{Axis, AxisName, MAX_BINS, NodeBytes, Place, bin_of, bins_per_unit};
+pub use axis::{Axis, AxisName, MAX_BINS, NodeBytes, Place, bin_start};
 pub use channel::{CHANNELS, CONFORMAL_LANE, Channel, LANES, RESERVED_LANE, SLOTS, Scale, Scales, Slot};
 pub use contact::{Contact, Contacts};
 pub use displacement::{Attitude, Displacement, displacement, pose_with};
@@ -115,5 +115,5 @@ pub use flags::Flags;
 pub use header::{AxisCounts, ErrorFigures, Header, MAX_PARTS, Material, SideHeader};
 pub use math::{ANGLE_LIMIT, Angle};
 pub use pose::{Canonical, POSE_LIMIT, Pose, Side, WheelGeometry};
-pub use rigid::{Coordinates, RigidMaps};
+pub use rigid::{Coordinates, RigidMap};
 pub use table::ContactTable;

@@ -1,9 +1,9 @@
 //! The kernel's only square root, sines and cosines: the same bits on every target, the same work for every argument.
 
 #[cfg(not(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable"))))]
-pub(crate) use crate::lanes::{Four, Mask, Two};
+pub(crate) use crate::lanes::{Four, Mask, Quad, Two};
 #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
-pub(crate) use crate::simd::{Four, Mask, Two};
+pub(crate) use crate::simd::{Four, Mask, Quad, Two};
 
 /// Largest angle of yaw and roll that is computed, rad; larger ones are clamped and flagged.
 pub const ANGLE_LIMIT: f64 = 0.125;
@@ -36,20 +36,26 @@ impl Angle {
     }
 
     /// Two angles at once.
+    ///
+    /// ```text
+    /// sin x     = x - x³/3! + x⁵/5! - x⁷/7! + x⁹/9!          = x + x p(-1/3!, 1/5!, -1/7!, 1/9!)
+    /// 1 - cos x = x²/2! - x⁴/4! + x⁶/6! - x⁸/8! + x¹⁰/10!    = x² / 2 + x² p(-1/4!, 1/6!, -1/8!, 1/10!)
+    /// ```
+    ///
+    /// with p(a, b, c, d) = x² ((a + x² b) + x⁴ (c + x² d)), for the sines and the versines together.
     #[inline(always)]
     pub(crate) fn pair(angles: Two) -> [Self; 2] {
-        let (limit, all) = (Two::all(ANGLE_LIMIT), Two::all);
-        let x = angles.at_least(all(-ANGLE_LIMIT)).at_most(limit);
-        let t = x * x;
-        // sin x = x - x^3/3! + x^5/5! - x^7/7! + x^9/9!
-        let squared = t * t;
-        let (low, high) = (all(-1.0 / 6.0) + t * all(1.0 / 120.0), all(-1.0 / 5040.0) + t * all(1.0 / 362_880.0));
-        let sin = x + x * (t * (low + squared * high));
-        // 1 - cos x = x^2/2! - x^4/4! + x^6/6! - x^8/8! + x^10/10!
-        let (low, high) = (all(-1.0 / 24.0) + t * all(1.0 / 720.0), all(-1.0 / 40_320.0) + t * all(1.0 / 3_628_800.0));
-        let versine = t * (all(0.5) + t * (low + squared * high));
-        let cos = all(1.0) - versine;
-        let limited = x.differs(angles).bits();
+        let x = angles.at_least(Two::all(-ANGLE_LIMIT)).at_most(Two::all(ANGLE_LIMIT));
+        let squares = x * x;
+        let both = |sine: f64, versine: f64| Quad::join([Two::all(sine), Two::all(versine)]);
+        let t = Quad::join([squares, squares]);
+        let low = both(-1.0 / 6.0, -1.0 / 24.0) + t * both(1.0 / 120.0, 1.0 / 720.0);
+        let high = both(-1.0 / 5040.0, -1.0 / 40_320.0) + t * both(1.0 / 362_880.0, 1.0 / 3_628_800.0);
+        let p = t * (low + (t * t) * high);
+        let factor = Quad::join([x, squares]);
+        let [sin, versine] = (factor * both(1.0, 0.5) + factor * p).halves();
+        let cos = Two::all(1.0) - versine;
+        let limited = x.differs(angles);
         let ([x0, x1], [s0, s1], [c0, c1]) = (x.numbers(), sin.numbers(), cos.numbers());
         let [v0, v1] = versine.numbers();
         [

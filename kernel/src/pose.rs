@@ -1,6 +1,6 @@
 //! Poses of the wheelset, the two sides, and the mirror that maps every case to the right wheel with yaw >= 0.
 
-use crate::math::Two;
+use crate::math::Quad;
 
 /// Largest magnitude of a pose's coordinate that is taken as a number, m or rad: beyond it, as for NaN and
 /// infinity, the lookup answers no contact and [`Flags::INVALID_INPUT`](crate::Flags::INVALID_INPUT).
@@ -77,11 +77,8 @@ impl Pose {
     #[inline]
     #[must_use]
     pub fn is_valid(&self) -> bool {
-        // `&`, not `&&`: the same work for every pose. A comparison with NaN is false.
-        (self.lateral.abs() <= POSE_LIMIT)
-            & (self.yaw.abs() <= POSE_LIMIT)
-            & (self.vertical.abs() <= POSE_LIMIT)
-            & (self.roll.abs() <= POSE_LIMIT)
+        // A comparison with NaN is false.
+        Quad::new([self.lateral, self.yaw, self.vertical, self.roll]).all_within(POSE_LIMIT)
     }
 
     /// The pose as the right wheel with yaw >= 0 sees it: the mirror at y = 0 turns the signs of lateral, yaw and
@@ -90,7 +87,12 @@ impl Pose {
     #[inline]
     #[must_use]
     pub fn canonical(&self, side: Side) -> Canonical {
-        let lateral_sign = side.sign();
+        self.mirrored(side.sign())
+    }
+
+    /// The same by the side's sign.
+    #[inline(always)]
+    pub(crate) fn mirrored(&self, lateral_sign: f64) -> Canonical {
         let yaw = lateral_sign * self.yaw;
         Canonical {
             pose: Self {
@@ -104,18 +106,6 @@ impl Pose {
             longitudinal_sign: 1.0_f64.copysign(yaw + 0.0),
         }
     }
-}
-
-/// A pose as its canonical case sees it and whether it is valid; an invalid pose is taken as pose zero, so that it costs
-/// the same.
-#[inline(always)]
-pub(crate) fn checked(pose: &Pose, side: Side) -> (Canonical, bool) {
-    let limit = Two::all(POSE_LIMIT);
-    let (plane, section) = (Two::new([pose.lateral, pose.yaw]), Two::new([pose.vertical, pose.roll]));
-    // A comparison with NaN does not hold.
-    let valid = plane.abs().within(limit).and(section.abs().within(limit));
-    let ([lateral, yaw], [vertical, roll]) = (plane.where_all(valid).numbers(), section.where_all(valid).numbers());
-    (Pose { lateral, yaw, vertical, roll }.canonical(side), valid.bits() == 3)
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
-//! The rigid maps: where the wheelset touches both rails without indentation, by interpolation.
+//! The rigid map: where the wheelset touches both rails without indentation, by interpolation.
 
-use crate::axis::{Axis, AxisPair, Place, Places, index};
-use crate::corners::{four_pairs, two_pairs};
+use crate::axis::{Axis, AxisPair, Places};
+use crate::corners::two;
 use crate::displacement::{Displacement, pose_with};
 use crate::header::MAX_PARTS;
-use crate::layout::refined;
-use crate::math::Two;
+use crate::layout::{RIGID, refined};
+use crate::math::{Quad, Two, at_least, at_most};
 use crate::pose::{Pose, WheelGeometry};
 
 /// Coordinates of a canonical pose in the table.
@@ -22,31 +22,31 @@ pub struct Coordinates {
     pub vertical: f64,
 }
 
-/// The two rigid maps of a side, read in place. Their cells are the records', each interval of an axis divided evenly
-/// into as many parts as the refinement says: whoever has found the record's cell has found theirs.
+/// The rigid map of a side, read in place: the roll at which both wheels touch, and the height at which this one does, a
+/// parabola in the roll offset. Its cells are the records', each interval of an axis divided evenly into as many parts as
+/// the refinement says: whoever has found the record's cell has found its own.
 #[derive(Clone, Copy)]
-pub struct RigidMaps<'a> {
+pub struct RigidMap<'a> {
     plane: AxisPair<'a>,
-    roll_offset: Axis<'a>,
-    /// Parts of an interval: of lateral and yaw, of roll offset.
-    plane_parts: Parts,
-    roll_parts: Parts,
-    /// Values of the vertical map from one yaw and from one lateral node to the next, of the roll map from one lateral
-    /// node to the next.
+    /// First and last roll offset, rad.
+    roll_offset: [f64; 2],
+    parts: Parts,
+    /// Nodes from one lateral node to the next.
     row: u32,
-    slab: u32,
-    roll_row: u32,
-    roll: &'a [[u8; 4]],
-    vertical: &'a [[u8; 4]],
+    nodes: &'a [[u8; RIGID]],
 }
 
-/// Parts that the intervals of two axes are divided into.
+/// Nodes for a cell that a checked map does not have.
+const NOTHING: &[[u8; RIGID]; 2] = &[[0; RIGID]; 2];
+
+/// Parts that the intervals of two axes are divided into. Aligned as [`AxisPair`] is.
 #[derive(Clone, Copy)]
+#[repr(C, align(16))]
 struct Parts {
-    counts: [u32; 2],
     numbers: [f64; 2],
     /// One less: the last part.
     last: [f64; 2],
+    counts: [u32; 2],
 }
 
 impl Parts {
@@ -55,7 +55,7 @@ impl Parts {
         Self { counts: counts.map(u32::from), numbers, last: numbers.map(|n| n - 1.0) }
     }
 
-    /// Cells of the maps and the fractions in them from those of the records, n parts of an interval each:
+    /// Cell of the map and the fractions in it from those of the records, n parts of an interval each:
     ///
     /// ```text
     /// part     = min(floor(n t), n - 1)
@@ -73,79 +73,53 @@ impl Parts {
     }
 }
 
-impl core::fmt::Debug for RigidMaps<'_> {
+impl core::fmt::Debug for RigidMap<'_> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.debug_tuple("RigidMaps").field(&self.roll_offset).finish_non_exhaustive()
+        f.debug_struct("RigidMap").field("nodes", &self.nodes.len()).field("row", &self.row).finish_non_exhaustive()
     }
-}
-
-/// Values of a cell that a checked map does not have.
-const NOTHING: &[[u8; 4]; 2] = &[[0; 4]; 2];
-
-/// Two `f32` from their bytes.
-#[inline(always)]
-fn numbers([low, high]: &[[u8; 4]; 2]) -> Two {
-    Two::new([f64::from(f32::from_le_bytes(*low)), f64::from(f32::from_le_bytes(*high))])
 }
 
 /// a + t (b - a)
 #[inline(always)]
-fn lerp(a: f64, b: f64, t: f64) -> f64 {
-    a + t * (b - a)
+fn lerp(a: Quad, b: Quad, t: f64) -> Quad {
+    a + Quad::all(t) * (b - a)
 }
 
-/// [`lerp`] of two.
-#[inline(always)]
-fn lerp2(a: Two, b: Two, t: f64) -> Two {
-    a + Two::all(t) * (b - a)
-}
-
-/// A cell of the maps and the fractions in it.
+/// The rigid contact at a lateral displacement and yaw.
 #[derive(Clone, Copy)]
-struct InPlane {
-    lateral: u32,
-    yaw: u32,
-    u: f64,
-    psi: f64,
+struct RigidContact {
+    /// Roll at which both wheels touch, rad, and h0, m.
+    roll_and_height: Two,
+    /// h1, m/rad, and h2, m/rad².
+    slopes: Two,
 }
 
-impl<'a> RigidMaps<'a> {
+impl<'a> RigidMap<'a> {
     /// None yet.
     pub(crate) const EMPTY: Self = Self {
         plane: AxisPair::EMPTY,
-        roll_offset: Axis::EMPTY,
-        plane_parts: Parts { counts: [0; 2], numbers: [0.0; 2], last: [0.0; 2] },
-        roll_parts: Parts { counts: [0; 2], numbers: [0.0; 2], last: [0.0; 2] },
+        roll_offset: [0.0; 2],
+        parts: Parts { numbers: [0.0; 2], last: [0.0; 2], counts: [0; 2] },
         row: 0,
-        slab: 0,
-        roll_row: 0,
-        roll: &[],
-        vertical: &[],
+        nodes: &[],
     };
 
-    /// Maps over little-endian `f32`: `roll[lateral][yaw]` in rad and `vertical[lateral][yaw][roll offset]` in m, over
-    /// the axes lateral, yaw and roll offset with every interval divided evenly into parts. None if the lengths do not
-    /// fit, or an interval has other than 1, 2, 4, 8 or 16 parts.
+    /// A map over nodes of four little-endian `f32`, `[lateral][yaw]`: the rigid roll in rad, and h0, h1, h2 of the rigid
+    /// height in m, m/rad, m/rad². The axes are lateral, yaw and roll offset; the intervals of the first two are divided
+    /// evenly into parts. None if the length does not fit, or an interval has other than 1, 2, 4, 8 or 16 parts.
     #[must_use]
-    pub fn new(axes: [Axis<'a>; 3], refinement: [u8; 3], roll: &'a [[u8; 4]], vertical: &'a [[u8; 4]]) -> Option<Self> {
-        let [lateral_axis, yaw_axis, roll_offset] = axes;
-        let [lateral_parts, yaw_parts, roll_parts] = refinement;
-        let lateral = refined(lateral_axis.len(), lateral_parts);
-        let (yaws, rolls) = (refined(yaw_axis.len(), yaw_parts), refined(roll_offset.len(), roll_parts));
-        let plane = lateral.checked_mul(yaws)?;
+    pub fn new(axes: [Axis<'a>; 3], refinement: [u8; 2], nodes: &'a [[u8; RIGID]]) -> Option<Self> {
+        let [lateral, yaw, roll_offset] = axes;
+        let [lateral_parts, yaw_parts] = refinement;
+        let (rows, row) = (refined(lateral.len(), lateral_parts), refined(yaw.len(), yaw_parts));
         let fits = refinement.iter().all(|parts| parts.is_power_of_two() && *parts <= MAX_PARTS)
-            && roll.len() == plane
-            && vertical.len() == plane.checked_mul(rolls)?;
+            && nodes.len() == rows.checked_mul(row)?;
         fits.then_some(Self {
-            plane: AxisPair::new([lateral_axis, yaw_axis]),
-            roll_offset,
-            plane_parts: Parts::new([lateral_parts, yaw_parts]),
-            roll_parts: Parts::new([roll_parts; 2]),
-            row: u32::try_from(rolls).ok()?,
-            slab: u32::try_from(yaws.checked_mul(rolls)?).ok()?,
-            roll_row: u32::try_from(yaws).ok()?,
-            roll,
-            vertical,
+            plane: AxisPair::new([lateral, yaw]),
+            roll_offset: roll_offset.range().into(),
+            parts: Parts::new(refinement),
+            row: u32::try_from(row).ok()?,
+            nodes,
         })
     }
 
@@ -155,57 +129,49 @@ impl<'a> RigidMaps<'a> {
         self.plane.locate(Two::new([lateral, yaw]))
     }
 
-    /// Place of a roll offset on the records' axis.
+    /// Bilinear between the nodes around a place.
     #[inline(always)]
-    pub(crate) fn roll_offset(&self, roll_offset: f64) -> Place {
-        self.roll_offset.locate(roll_offset)
-    }
-
-    #[inline(always)]
-    fn in_plane(&self, places: &Places) -> InPlane {
-        let ([lateral, yaw], fractions) = self.plane_parts.of(places.cells, places.fraction);
+    fn contact(&self, places: &Places) -> RigidContact {
+        let ([lateral, yaw], fractions) = self.parts.of(places.cells, places.fraction);
         let [u, psi] = fractions.numbers();
-        InPlane { lateral, yaw, u, psi }
+        // Every cell of a checked map has its corners.
+        let corners = two(self.nodes, lateral * self.row + yaw, self.row).unwrap_or([NOTHING; 2]);
+        let [[a, b], [c, d]] = corners.map(|pair| pair.each_ref().map(Quad::of_singles));
+        let [roll_and_height, slopes] = lerp(lerp(a, c, u), lerp(b, d, u), psi).halves();
+        RigidContact { roll_and_height, slopes }
     }
 
+    /// h1 ρ + h2 ρ² with the roll offset ρ clamped to its axis.
     #[inline(always)]
-    fn roll_at(&self, at: InPlane) -> f64 {
-        let base = at.lateral * self.roll_row + at.yaw;
-        let [near, far] = two_pairs(self.roll, base, self.roll_row).unwrap_or([NOTHING; 2]).map(numbers);
-        let [a, b] = lerp2(near, far, at.u).numbers();
-        lerp(a, b, at.psi)
-    }
-
-    #[inline(always)]
-    fn vertical_at(&self, at: InPlane, roll_offset: &Place) -> f64 {
-        let ([roll, _], fraction) = self.roll_parts.of([index(roll_offset.cell); 2], Two::all(roll_offset.fraction));
-        let base = at.lateral * self.slab + at.yaw * self.row + roll;
-        let corners = four_pairs(self.vertical, base, [self.slab, self.row]).unwrap_or([NOTHING; 4]);
-        let [near, near_next, far, far_next] = corners.map(numbers);
-        let [a, b] = lerp2(lerp2(near, far, at.u), lerp2(near_next, far_next, at.u), at.psi).numbers();
-        let [fraction, _] = fraction.numbers();
-        lerp(a, b, fraction)
+    fn rise(&self, contact: &RigidContact, roll_offset: f64) -> f64 {
+        let ([first, last], [h1, h2]) = (self.roll_offset, contact.slopes.numbers());
+        let offset = at_most(at_least(roll_offset, first), last);
+        offset * (h1 + offset * h2)
     }
 
     /// Roll at which both wheels touch, rad, bilinear in (u, yaw), clamped to the map.
     #[inline]
     #[must_use]
     pub fn roll(&self, lateral: f64, yaw: f64) -> f64 {
-        self.roll_at(self.in_plane(&self.plane(lateral, yaw)))
+        let [roll, _] = self.contact(&self.plane(lateral, yaw)).roll_and_height.numbers();
+        roll
     }
 
-    /// Vertical displacement w at which this wheel touches, m, trilinear in (u, yaw, roll offset), clamped to the map.
+    /// Vertical displacement w at which this wheel touches, m, a parabola in the roll offset with coefficients bilinear in
+    /// (u, yaw), clamped to the map.
     #[inline]
     #[must_use]
     pub fn vertical(&self, lateral: f64, yaw: f64, roll_offset: f64) -> f64 {
-        self.vertical_at(self.in_plane(&self.plane(lateral, yaw)), &self.roll_offset(roll_offset))
+        let contact = self.contact(&self.plane(lateral, yaw));
+        let [_, height] = contact.roll_and_height.numbers();
+        height + self.rise(&contact, roll_offset)
     }
 
     /// Table coordinates of a displacement, yaw >= 0 and roll:
     ///
     /// ```text
-    /// roll offset = roll - roll_rigid(u, yaw)
-    /// ζ           = w - w_rigid(u, yaw, roll offset)
+    /// ρ = roll - roll_rigid(u, yaw)                  the roll offset
+    /// ζ = w - (h0 + h1 ρ + h2 ρ²)                    with h0, h1, h2 of (u, yaw)
     /// ```
     #[inline(always)]
     #[must_use]
@@ -213,18 +179,17 @@ impl<'a> RigidMaps<'a> {
         self.locate(displacement, yaw, roll).0
     }
 
-    /// [`RigidMaps::coordinates`] with the places found on the way: of lateral and yaw, of the roll offset.
+    /// [`RigidMap::coordinates`] with the places of lateral and yaw found on the way.
     #[inline(always)]
-    pub(crate) fn locate(&self, displacement: &Displacement, yaw: f64, roll: f64) -> (Coordinates, Places, Place) {
+    pub(crate) fn locate(&self, displacement: &Displacement, yaw: f64, roll: f64) -> (Coordinates, Places) {
         let plane = self.plane(displacement.lateral, yaw);
-        let at = self.in_plane(&plane);
-        let roll_offset = roll - self.roll_at(at);
-        let place = self.roll_offset(roll_offset);
-        let vertical = displacement.vertical - self.vertical_at(at, &place);
-        (Coordinates { lateral: displacement.lateral, yaw, roll_offset, vertical }, plane, place)
+        let contact = self.contact(&plane);
+        let [roll_offset, above] = (Two::new([roll, displacement.vertical]) - contact.roll_and_height).numbers();
+        let vertical = above - self.rise(&contact, roll_offset);
+        (Coordinates { lateral: displacement.lateral, yaw, roll_offset, vertical }, plane)
     }
 
-    /// The canonical pose at table coordinates: the inverse of [`RigidMaps::coordinates`]. A compiler samples its
+    /// The canonical pose at table coordinates: the inverse of [`RigidMap::coordinates`]. A compiler samples its
     /// nodes at these poses.
     #[inline]
     #[must_use]

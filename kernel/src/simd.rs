@@ -6,6 +6,7 @@
 //! the loads and the prefetch take pointers, and those are made from references to as many bytes as they read.
 
 mod blend;
+mod quad;
 
 use core::arch::x86_64::*;
 use core::ops::{Add, Div, Mul, Sub};
@@ -15,6 +16,7 @@ use crate::layout::RECORD;
 #[cfg(test)]
 pub(crate) use blend::blend_128;
 pub(crate) use blend::widest as blend;
+pub(crate) use quad::Quad;
 
 /// Four `f32` that take the same operations; as [`crate::lanes::Four`].
 #[derive(Clone, Copy)]
@@ -62,6 +64,19 @@ impl Four {
     #[expect(clippy::cast_sign_loss, reason = "four bits")]
     pub(crate) fn above_zero(self) -> usize {
         unsafe { _mm_movemask_ps(_mm_cmplt_ps(_mm_setzero_ps(), self.0)) as usize }
+    }
+
+    #[inline(always)]
+    pub(crate) fn spread(self) -> [Self; 4] {
+        unsafe {
+            let x = _mm_castps_si128(self.0);
+            [
+                Self(_mm_castsi128_ps(_mm_shuffle_epi32::<0x00>(x))),
+                Self(_mm_castsi128_ps(_mm_shuffle_epi32::<0x55>(x))),
+                Self(_mm_castsi128_ps(_mm_shuffle_epi32::<0xaa>(x))),
+                Self(_mm_castsi128_ps(_mm_shuffle_epi32::<0xff>(x))),
+            ]
+        }
     }
 
     #[inline(always)]
@@ -128,13 +143,6 @@ impl Two {
     }
 
     #[inline(always)]
-    pub(crate) fn single(self) -> [f32; 2] {
-        let single = Four(unsafe { _mm_cvtpd_ps(self.0) });
-        let [a, b, ..] = single.numbers();
-        [a, b]
-    }
-
-    #[inline(always)]
     pub(crate) fn at_least(self, bound: Self) -> Self {
         Self(unsafe { _mm_max_pd(self.0, bound.0) })
     }
@@ -142,6 +150,13 @@ impl Two {
     #[inline(always)]
     pub(crate) fn at_most(self, bound: Self) -> Self {
         Self(unsafe { _mm_min_pd(self.0, bound.0) })
+    }
+
+    #[inline(always)]
+    pub(crate) fn single(self) -> [f32; 2] {
+        let single = Four(unsafe { _mm_cvtpd_ps(self.0) });
+        let [a, b, ..] = single.numbers();
+        [a, b]
     }
 
     #[inline(always)]
@@ -155,16 +170,17 @@ impl Two {
     }
 
     #[inline(always)]
-    pub(crate) fn differs(self, other: Self) -> Mask {
-        Mask(unsafe { _mm_cmpneq_pd(self.0, other.0) })
-    }
-
-    #[inline(always)]
     pub(crate) fn where_all(self, mask: Mask) -> Self {
         unsafe {
             let both = _mm_and_pd(mask.0, _mm_shuffle_pd::<1>(mask.0, mask.0));
             Self(_mm_and_pd(self.0, both))
         }
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_sign_loss, clippy::cast_possible_truncation, reason = "two bits")]
+    pub(crate) fn differs(self, other: Self) -> u8 {
+        unsafe { _mm_movemask_pd(_mm_cmpneq_pd(self.0, other.0)) as u8 }
     }
 
     #[inline(always)]
@@ -198,12 +214,6 @@ impl Mask {
     #[inline(always)]
     pub(crate) fn and(self, other: Self) -> Self {
         Self(unsafe { _mm_and_pd(self.0, other.0) })
-    }
-
-    #[inline(always)]
-    #[expect(clippy::cast_sign_loss, clippy::cast_possible_truncation, reason = "two bits")]
-    pub(crate) fn bits(self) -> u8 {
-        unsafe { _mm_movemask_pd(self.0) as u8 }
     }
 }
 

@@ -4,8 +4,8 @@ use core::fmt;
 use core::hint::black_box;
 use core::mem::MaybeUninit;
 
-use crate::axis::{Axis, AxisName, Place, Places};
-use crate::blend::{Cell, LaneScales, Lanes, edges};
+use crate::axis::{Axis, AxisName, AxisPair, Places};
+use crate::blend::{Cell, LaneScales, Lanes, RECORD_BYTES, edges};
 use crate::channel::{CHANNELS, CONFORMAL_LANE, Channel, LANES, SLOTS, Slot};
 use crate::check;
 use crate::contact::{Contacts, Frame, Wheel};
@@ -15,15 +15,17 @@ use crate::flags::Flags;
 use crate::header::{Header, SideHeader};
 use crate::layout::{RECORD, Sections, SideSections};
 use crate::math::Two;
-use crate::pose::{Canonical, Pose, Side, WheelGeometry, checked};
-use crate::rigid::{Coordinates, RigidMaps};
+use crate::pose::{Canonical, Pose, Side, WheelGeometry};
+use crate::rigid::{Coordinates, RigidMap};
 
 /// A contact table, read in place from a borrowed image.
 #[derive(Clone)]
 pub struct ContactTable<'a> {
     header: Header<'a>,
     axes: [Axis<'a>; 4],
-    /// Records from one node to the next along lateral, yaw and roll offset.
+    /// Roll offset and vertical.
+    section: AxisPair<'a>,
+    /// Bytes from one record to the next along lateral, yaw and roll offset.
     strides: [u32; 3],
     right: SideData<'a>,
     left: SideData<'a>,
@@ -32,9 +34,11 @@ pub struct ContactTable<'a> {
 /// What a lookup needs of a side.
 #[derive(Clone)]
 struct SideData<'a> {
+    /// +1 for the right wheel, -1 for the left one.
+    sign: f64,
     geometry: WheelGeometry,
     wheel: Wheel,
-    rigid: RigidMaps<'a>,
+    rigid: RigidMap<'a>,
     records: &'a [[u8; RECORD]],
     scales: LaneScales,
 }
@@ -46,9 +50,8 @@ struct Located {
     attitude: Attitude,
     displacement: Displacement,
     coordinates: Coordinates,
-    /// The places of the first three coordinates.
+    /// The places of lateral and yaw.
     plane: Places,
-    roll_offset: Place,
 }
 
 /// A lookup before its records are read.
@@ -66,6 +69,7 @@ impl<'a> ContactTable<'a> {
     const EMPTY: Self = Self {
         header: Header::EMPTY,
         axes: [Axis::EMPTY; 4],
+        section: AxisPair::EMPTY,
         strides: [0; 3],
         right: SideData::EMPTY,
         left: SideData::EMPTY,
@@ -100,7 +104,7 @@ impl<'a> ContactTable<'a> {
 
     #[inline(never)]
     fn fill(&mut self, image: &'a [u8]) -> Result<(), TableError> {
-        let Self { header, axes, strides, right, left } = self;
+        let Self { header, axes, section, strides, right, left } = self;
         let bytes = check::envelope(image)?;
         check::header(bytes, header)?;
         let sections = Sections::new(bytes.len(), &header.axes, header.refinement, header.sides());
@@ -114,14 +118,19 @@ impl<'a> ContactTable<'a> {
         let [right_sections, left_sections] = &sections.sides;
         let [lateral, yaw, roll, vertical] = &*axes;
         let plane = [lateral, yaw, roll];
-        right.fill(image, &header.right, right_sections, plane, header.refinement)?;
+        right.fill(image, Side::Right, &header.right, right_sections, plane, header.refinement)?;
         match &header.left {
-            Some(side) => left.fill(image, side, left_sections, plane, header.refinement)?,
-            None => left.clone_from(right),
+            Some(side) => left.fill(image, Side::Left, side, left_sections, plane, header.refinement)?,
+            // The right side's data serve both.
+            None => {
+                left.clone_from(right);
+                left.turn(Side::Left);
+            }
         }
+        *section = AxisPair::new([*roll, *vertical]);
         let records = [yaw.len() * roll.len() * vertical.len(), roll.len() * vertical.len(), vertical.len()];
-        // Sections are below 4 GiB, so strides of records fit.
-        *strides = records.map(|stride| u32::try_from(stride).unwrap_or_default());
+        // Sections are below 4 GiB, so strides fit.
+        *strides = records.map(|stride| u32::try_from(stride).unwrap_or_default().wrapping_mul(RECORD_BYTES));
         Ok(())
     }
 
@@ -143,9 +152,9 @@ impl<'a> ContactTable<'a> {
         }
     }
 
-    /// The rigid maps of a side, for canonical coordinates.
+    /// The rigid map of a side, for canonical coordinates.
     #[must_use]
-    pub const fn rigid(&self, side: Side) -> &RigidMaps<'a> {
+    pub const fn rigid(&self, side: Side) -> &RigidMap<'a> {
         &self.side(side).rigid
     }
 
@@ -182,10 +191,8 @@ impl<'a> ContactTable<'a> {
     pub fn channels(&self, side: Side, at: &Coordinates) -> [[f32; CHANNELS]; SLOTS] {
         let side = self.side(side);
         let plane = side.rigid.plane(at.lateral, at.yaw);
-        let (cell, _) = self.cell(&plane, &side.rigid.roll_offset(at.roll_offset), at.vertical);
-        let mut lanes = Lanes::ZERO;
-        side.blend(&cell, &mut lanes);
-        slots(&lanes)
+        let (cell, _) = self.cell(&plane, at);
+        side.blend(&cell).map_or([[0.0; CHANNELS]; SLOTS], |lanes| slots(&lanes))
     }
 
     /// Asks for the sixteen records of a pose, so that they are in the cache when the lookup comes, while the caller
@@ -198,8 +205,8 @@ impl<'a> ContactTable<'a> {
 
     #[inline(always)]
     fn prefetch_cell(&self, side: Side, cell: &Cell) {
-        for record in edges(self.side(side).records, cell).into_iter().flatten() {
-            prefetch(record);
+        for edge in edges(self.side(side).records, cell).into_iter().flatten() {
+            edge.as_chunks::<RECORD>().0.iter().for_each(prefetch);
         }
     }
 
@@ -239,7 +246,7 @@ impl<'a> ContactTable<'a> {
     #[inline(always)]
     fn prepare(&self, side: Side, pose: &Pose) -> Prepared {
         let located = self.locate(side, pose);
-        let (cell, flags) = self.cell(&located.plane, &located.roll_offset, located.coordinates.vertical);
+        let (cell, flags) = self.cell(&located.plane, &located.coordinates);
         Prepared { located, cell, flags }
     }
 
@@ -250,21 +257,21 @@ impl<'a> ContactTable<'a> {
         let Prepared { located, cell, flags } = prepared;
         // Through memory that the compiler cannot see through: it would interleave the blend's parts with what follows,
         // and spill more registers than it saves.
-        let mut lanes = Lanes::any();
-        let lanes = black_box(&mut lanes);
-        data.blend(cell, lanes);
+        let Some(lanes) = data.blend(cell) else { return *contacts = Contacts::NONE };
+        let lanes = black_box(&lanes);
         let frame = Frame {
             wheel: &data.wheel,
-            canonical: &located.canonical,
+            longitudinal_sign: located.canonical.longitudinal_sign,
             attitude: &located.attitude,
             place: [located.displacement.lateral + data.geometry.lateral_position, located.displacement.vertical],
+            arm: data.geometry.lateral_position - located.attitude.inwards(&data.geometry),
         };
         let force = contacts.fill(lanes, &frame, located.valid);
         let [.., conformal, _] = lanes.0;
-        contacts.flags = *flags
+        let remarks = *flags
             | Flags::ANGLE_LIMITED.when(located.attitude.yaw.limited | located.attitude.roll.limited)
-            | Flags::CONFORMAL.when((conformal > 0.0) & force)
-            | Flags::INVALID_INPUT.when(!located.valid);
+            | Flags::CONFORMAL.when((conformal > 0.0) & force);
+        contacts.flags = remarks.when(located.valid) | Flags::INVALID_INPUT.when(!located.valid);
     }
 
     fn counts(&self) -> [usize; 4] {
@@ -274,23 +281,20 @@ impl<'a> ContactTable<'a> {
     #[inline(always)]
     fn locate(&self, side: Side, pose: &Pose) -> Located {
         let data = self.side(side);
-        let (canonical, valid) = checked(pose, side);
+        // An invalid pose costs the same: what is no number is limited like any other.
+        let (canonical, valid) = (pose.mirrored(data.sign), pose.is_valid());
         let attitude = Attitude::new(canonical.pose.yaw, canonical.pose.roll);
         let displacement = Displacement::new(&data.geometry, &canonical.pose, &attitude);
-        let (coordinates, plane, roll_offset) =
-            data.rigid.locate(&displacement, attitude.yaw.value, attitude.roll.value);
-        Located { valid, canonical, attitude, displacement, coordinates, plane, roll_offset }
+        let (coordinates, plane) = data.rigid.locate(&displacement, attitude.yaw.value, attitude.roll.value);
+        Located { valid, canonical, attitude, displacement, coordinates, plane }
     }
 
     #[inline(always)]
-    fn cell(&self, plane: &Places, roll_offset: &Place, vertical: f64) -> (Cell, Flags) {
-        let [.., axis] = &self.axes;
-        let vertical = axis.locate(vertical);
+    fn cell(&self, plane: &Places, at: &Coordinates) -> (Cell, Flags) {
+        let section = self.section.locate(Two::new([at.roll_offset, at.vertical]));
         // The flags of the four axes are the lowest four bits, in the axes' order.
-        let section = Two::new([roll_offset.fraction, vertical.fraction]);
-        let section = section.differs(Two::new([roll_offset.unclamped, vertical.unclamped])).bits();
-        let flags = Flags::of_axes(plane.clamped | section << 2);
-        (Cell::new(plane, roll_offset, &vertical, self.strides), flags)
+        let flags = Flags::of_axes(plane.clamped | section.clamped << 2);
+        (Cell::new(plane, &section, self.strides), flags)
     }
 }
 
@@ -303,9 +307,10 @@ impl fmt::Debug for ContactTable<'_> {
 impl<'a> SideData<'a> {
     /// To be filled.
     const EMPTY: Self = Self {
+        sign: 0.0,
         geometry: SideHeader::EMPTY.geometry,
         wheel: Wheel::EMPTY,
-        rigid: RigidMaps::EMPTY,
+        rigid: RigidMap::EMPTY,
         records: &[],
         scales: LaneScales::NONE,
     };
@@ -315,36 +320,41 @@ impl<'a> SideData<'a> {
     fn fill(
         &mut self,
         image: &'a [u8],
+        side: Side,
         header: &SideHeader<'_>,
         place: &SideSections,
         axes: [&Axis<'a>; 3],
-        refinement: [u8; 3],
+        refinement: [u8; 2],
     ) -> Result<(), TableError> {
-        let roll = check::rigid_roll(image, &place.rigid_roll)?;
-        let vertical = check::rigid_vertical(image, &place.rigid_vertical)?;
-        let rigid = RigidMaps::new(axes.map(|axis| *axis), refinement, roll, vertical);
-        // The sections were laid out for them, and end with the image.
+        let rigid = RigidMap::new(axes.map(|axis| *axis), refinement, check::rigid(image, &place.rigid)?);
+        // The section was laid out for it, and ends with the image.
         let length = image.len();
         self.rigid = rigid.ok_or(TableError::Sections { needed: Some(length), length })?;
         self.records = check::records(image, &place.records)?;
         self.geometry = header.geometry;
-        self.wheel = Wheel::new(&header.geometry);
+        self.turn(side);
         self.scales.fill(&header.scales);
         Ok(())
     }
 
+    /// Makes the data those of a side.
+    fn turn(&mut self, side: Side) {
+        self.sign = side.sign();
+        self.wheel = Wheel::new(&self.geometry, side);
+    }
+
     /// Blended lanes in their units, by the vector instructions of the build's target. All give the same bits.
     #[inline(always)]
-    fn blend(&self, cell: &Cell, lanes: &mut Lanes) {
+    fn blend(&self, cell: &Cell) -> Option<Lanes> {
         #[cfg(all(target_arch = "arm", not(feature = "portable")))]
-        crate::arm::blend(self.records, cell, &self.scales, lanes);
+        return crate::arm::blend(self.records, cell, &self.scales);
         #[cfg(any(
             not(any(target_arch = "arm", all(target_arch = "x86_64", target_feature = "sse2"))),
             feature = "portable"
         ))]
-        crate::blend::portable(self.records, cell, &self.scales, lanes);
+        return crate::blend::portable(self.records, cell, &self.scales);
         #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
-        crate::simd::blend(self.records, cell, &self.scales, lanes);
+        return crate::simd::blend(self.records, cell, &self.scales);
     }
 }
 

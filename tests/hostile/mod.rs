@@ -110,7 +110,7 @@ fn damage(image: &mut Vec<u8>, input: &mut Input<'_>) {
         4 => {
             let at = place(&sections.nodes[input.below(4)], 8, input);
             let near = image.get(at..).and_then(<[u8]>::first_chunk).map_or(0.0, |bytes| f64::from_le_bytes(*bytes));
-            // A node is an `f32`; a reciprocal is not.
+            // An end is an `f32`; other nodes and reciprocals are not.
             let value = input.number(near);
             let value = if input.byte().is_multiple_of(2) { value } else { f64::from(value as f32) };
             put(image, at, &value.to_le_bytes());
@@ -120,9 +120,7 @@ fn damage(image: &mut Vec<u8>, input: &mut Input<'_>) {
             put(image, at, &input.bytes::<2>());
         }
         6 => {
-            let side = &sections.sides[0];
-            let map = if input.byte().is_multiple_of(2) { &side.rigid_roll } else { &side.rigid_vertical };
-            let at = place(map, 4, input);
+            let at = place(&sections.sides[0].rigid, 4, input);
             put_single(image, at, input);
         }
         _ => {
@@ -168,7 +166,7 @@ fn header_damaged<'a>(mut header: Header<'a>, input: &mut Input<'_>) -> Header<'
         5 => {
             let index = input.below(5);
             let Some(axis) = header.axes.get_mut(index) else {
-                header.refinement[input.below(3)] = input.byte() % 33;
+                header.refinement[input.below(2)] = input.byte() % 33;
                 return header;
             };
             let count = u16::from_le_bytes(input.bytes()) % 4200;
@@ -209,7 +207,7 @@ fn rewritten(image: &[u8], header: &Header<'_>, old: &Sections) -> Option<Vec<u8
     let axes = old.nodes.iter().zip(&new.nodes).chain(old.bins.iter().zip(&new.bins));
     let sides = new.sides.iter().take(header.sides()).flat_map(|to| {
         let from = &old.sides[0];
-        [(&from.rigid_roll, &to.rigid_roll), (&from.rigid_vertical, &to.rigid_vertical), (&from.records, &to.records)]
+        [(&from.rigid, &to.rigid), (&from.records, &to.records)]
     });
     for (from, to) in axes.chain(sides) {
         let length = from.len().min(to.len());

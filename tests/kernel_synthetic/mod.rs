@@ -10,9 +10,9 @@ use flangeway_host::image::{ImageParts, SideParts, quantise, scale_over, scale_t
 
 /// A table's parts, owned.
 pub struct Synthetic {
-    pub axes: [Vec<f32>; 4],
-    /// Parts of an interval in the rigid maps.
-    pub refinement: [u8; 3],
+    pub axes: [Vec<f64>; 4],
+    /// Parts of an interval in the rigid map.
+    pub refinement: [u8; 2],
     pub sides: Vec<SyntheticSide>,
 }
 
@@ -20,34 +20,34 @@ pub struct Synthetic {
 pub struct SyntheticSide {
     pub geometry: WheelGeometry,
     pub scales: Scales,
-    pub rigid_roll: Vec<f32>,
-    pub rigid_vertical: Vec<f32>,
+    pub rigid: Vec<[f32; 4]>,
     pub records: Vec<[i16; LANES]>,
 }
 
 /// Uneven axes of moderate size.
-pub fn uneven_axes() -> [Vec<f32>; 4] {
+pub fn uneven_axes() -> [Vec<f64>; 4] {
     [
         vec![-0.012, -0.007, -0.006, -0.0035, 0.0, 0.004, 0.0081, 0.0112],
         vec![0.0, 0.002, 0.01, 0.04],
         vec![-0.002, 0.0005, 0.003],
         vec![-0.0001, 0.00005, 0.0003],
     ]
+    .map(|axis: Vec<f32>| axis.into_iter().map(f64::from).collect())
 }
 
 /// The smallest axes there are.
-pub fn smallest_axes() -> [Vec<f32>; 4] {
-    let pair = |a: f32, b: f32| vec![a, b];
+pub fn smallest_axes() -> [Vec<f64>; 4] {
+    let pair = |a: f32, b: f32| vec![f64::from(a), f64::from(b)];
     [pair(-0.01, 0.01), pair(0.0, 0.03125), pair(-0.0025, 0.0025), pair(0.0, 0.00025)]
 }
 
 /// Nodes of an axis with each interval divided into parts.
-pub fn divided(axis: &[f32], parts: u8) -> Vec<f64> {
-    let inner = |w: &[f32]| {
-        let (a, b) = (f64::from(w[0]), f64::from(w[1]));
-        (0..parts).map(|k| a + (b - a) * f64::from(k) / f64::from(parts)).collect::<Vec<_>>()
+pub fn divided(axis: &[f64], parts: u8) -> Vec<f64> {
+    let inner = |w: &[f64]| {
+        let (a, b) = (w[0], w[1]);
+        (0..parts).map(move |k| a + (b - a) * f64::from(k) / f64::from(parts)).collect::<Vec<_>>()
     };
-    axis.windows(2).flat_map(inner).chain(axis.last().map(|x| f64::from(*x))).collect()
+    axis.windows(2).flat_map(inner).chain(axis.last().copied()).collect()
 }
 
 /// Rigid roll, rad: bilinear.
@@ -55,9 +55,15 @@ pub fn rigid_roll(u: f64, yaw: f64) -> f64 {
     0.03 * u - 0.5 * u * yaw + 0.0001
 }
 
-/// Rigid vertical displacement, m: trilinear.
+/// Coefficients of the rigid height's parabola in the roll offset, m, m/rad, m/rad²: bilinear.
+pub fn rigid_height(u: f64, yaw: f64) -> [f64; 3] {
+    [0.05 * u + 0.01 * yaw + 0.7 * u * yaw, -0.1 - u + 3.0 * u * yaw, 0.4 + 10.0 * u - 2.0 * yaw + 50.0 * u * yaw]
+}
+
+/// Rigid vertical displacement, m.
 pub fn rigid_vertical(u: f64, yaw: f64, roll: f64) -> f64 {
-    0.05 * u + 0.01 * yaw - 0.1 * roll + 0.7 * u * yaw - u * roll + 3.0 * u * yaw * roll
+    let [h0, h1, h2] = rigid_height(u, yaw);
+    h0 + h1 * roll + h2 * roll * roll
 }
 
 /// Centre and amplitude of a channel.
@@ -94,26 +100,26 @@ pub fn value(slot: Slot, channel: Channel, n: [f64; 4], seed: f64) -> f64 {
 }
 
 /// A coordinate normalised to -1..1 over an axis.
-pub fn normalised(axis: &[f32], x: f64) -> f64 {
-    let (a, b) = (f64::from(axis[0]), f64::from(axis[axis.len() - 1]));
+pub fn normalised(axis: &[f64], x: f64) -> f64 {
+    let (a, b) = (axis[0], axis[axis.len() - 1]);
     2.0 * (x - a) / (b - a) - 1.0
 }
 
 impl Synthetic {
-    /// A table over these axes with one or two sides, the rigid maps on the same axes.
-    pub fn new(axes: [Vec<f32>; 4], sides: usize) -> Self {
-        Self::refined(axes, [1; 3], sides)
+    /// A table over these axes with one or two sides, the rigid map on the same axes.
+    pub fn new(axes: [Vec<f64>; 4], sides: usize) -> Self {
+        Self::refined(axes, [1; 2], sides)
     }
 
-    /// The same with rigid maps of so many parts in an interval.
-    pub fn refined(axes: [Vec<f32>; 4], refinement: [u8; 3], sides: usize) -> Self {
+    /// The same with a rigid map of so many parts in an interval.
+    pub fn refined(axes: [Vec<f64>; 4], refinement: [u8; 2], sides: usize) -> Self {
         let sides = (0..sides).map(|side| SyntheticSide::new(&axes, refinement, 0.37 * side as f64)).collect();
         Self { axes, refinement, sides }
     }
 
     /// A mirrored table with uneven axes.
     pub fn uneven() -> Self {
-        Self::refined(uneven_axes(), [4, 1, 2], 1)
+        Self::refined(uneven_axes(), [4, 2], 1)
     }
 
     /// Normalised coordinates of table coordinates.
@@ -155,7 +161,7 @@ impl Synthetic {
 }
 
 impl SyntheticSide {
-    fn new(axes: &[Vec<f32>; 4], refinement: [u8; 3], seed: f64) -> Self {
+    fn new(axes: &[Vec<f64>; 4], refinement: [u8; 2], seed: f64) -> Self {
         let mut scales: Scales = [[scale_over(0.0, 1.0); CHANNELS]; SLOTS];
         for slot in Slot::ALL {
             for channel in Channel::ALL {
@@ -171,7 +177,7 @@ impl SyntheticSide {
             for p in &axes[1] {
                 for r in &axes[2] {
                     for z in &axes[3] {
-                        let x = [u, p, r, z].map(|x| f64::from(*x));
+                        let x = [u, p, r, z].map(|x| *x);
                         let n = std::array::from_fn(|i| normalised(&axes[i], x[i]));
                         let mut record = [0; LANES];
                         for slot in Slot::ALL {
@@ -186,19 +192,16 @@ impl SyntheticSide {
                 }
             }
         }
-        let [lateral, yaw, roll] = std::array::from_fn(|i| divided(&axes[i], refinement[i]));
-        let mut maps = (Vec::new(), Vec::new());
-        for u in lateral {
-            for &p in &yaw {
-                maps.0.push(rigid_roll(u, p) as f32);
-                maps.1.extend(roll.iter().map(|r| rigid_vertical(u, p, *r) as f32));
-            }
-        }
+        let [lateral, yaw] = std::array::from_fn(|i| divided(&axes[i], refinement[i]));
+        let node = |u: f64, p: f64| {
+            let [h0, h1, h2] = rigid_height(u, p);
+            [rigid_roll(u, p), h0, h1, h2].map(|x| x as f32)
+        };
+        let rigid = lateral.iter().flat_map(|&u| yaw.iter().map(move |&p| node(u, p))).collect();
         Self {
             geometry: WheelGeometry { nominal_radius: 0.46, lateral_position: 0.75 + 0.001 * seed },
             scales,
-            rigid_roll: maps.0,
-            rigid_vertical: maps.1,
+            rigid,
             records,
         }
     }
@@ -216,6 +219,6 @@ impl SyntheticSide {
     }
 
     fn parts(&self) -> SideParts<'_> {
-        SideParts { rigid_roll: &self.rigid_roll, rigid_vertical: &self.rigid_vertical, records: &self.records }
+        SideParts { rigid: &self.rigid, records: &self.records }
     }
 }

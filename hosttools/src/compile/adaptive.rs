@@ -164,11 +164,11 @@ impl Search {
     }
 
     /// Sum of the weights of the trials in each interval of an axis.
-    fn blame(&self, nodes: &[f32], direction: Direction, weights: &[f64]) -> Vec<f64> {
+    fn blame(&self, nodes: &[f64], direction: Direction, weights: &[f64]) -> Vec<f64> {
         let mut blame = vec![0.0; nodes.len() - 1];
         for (trial, weight) in self.trials.iter().zip(weights) {
             let x = trial.coordinates[direction as usize];
-            let above = nodes.partition_point(|&node| f64::from(node) <= x);
+            let above = nodes.partition_point(|&node| node <= x);
             blame[above.clamp(1, nodes.len() - 1) - 1] += weight;
         }
         blame
@@ -186,7 +186,7 @@ impl Search {
         let weights: Vec<f64> = now.errors.iter().map(|&error| weight(error)).collect();
         let blame = self.blame(nodes, direction, &weights);
         // Halves too narrow for the kernel's search map are left alone.
-        let narrowest = (nodes[nodes.len() - 1] - nodes[0]) / (BINS_A_NODE * nodes.len()) as f32;
+        let narrowest = (nodes[nodes.len() - 1] - nodes[0]) / (BINS_A_NODE * nodes.len()) as f64;
         let mut order: Vec<usize> = (0..blame.len()).filter(|&i| 0.5 * (nodes[i + 1] - nodes[i]) > narrowest).collect();
         order.sort_by(|&a, &b| blame[b].total_cmp(&blame[a]).then(a.cmp(&b)));
         let share = (nodes.len() as f64 * STEP) as usize;
@@ -216,10 +216,10 @@ impl Search {
 }
 
 /// The nodes with the middles of these intervals.
-fn with_midpoints(nodes: &[f32], intervals: &[usize]) -> Vec<f32> {
-    let middle = |&i: &usize| ((f64::from(nodes[i]) + f64::from(nodes[i + 1])) / 2.0) as f32;
-    let mut refined: Vec<f32> = nodes.iter().copied().chain(intervals.iter().map(middle)).collect();
-    refined.sort_by(f32::total_cmp);
+fn with_midpoints(nodes: &[f64], intervals: &[usize]) -> Vec<f64> {
+    let middle = |&i: &usize| (nodes[i] + nodes[i + 1]) / 2.0;
+    let mut refined: Vec<f64> = nodes.iter().copied().chain(intervals.iter().map(middle)).collect();
+    refined.sort_by(f64::total_cmp);
     refined
 }
 

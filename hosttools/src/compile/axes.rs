@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use flangeway::bin_start;
+
 use crate::error::{Error, Result};
 use crate::image::OwnedAxis;
 use crate::recipe::{self, Nodes, Recipe};
@@ -13,8 +15,8 @@ const YAW: usize = 3;
 const VERTICAL: usize = 3;
 const ROLL: usize = 3;
 
-/// Parts that the rigid maps divide an interval of the records into: lateral, yaw, roll offset.
-pub(super) const REFINEMENT: [u8; 3] = [4, 2, 2];
+/// Parts that the rigid map divides an interval of the records into: lateral, yaw.
+pub(super) const REFINEMENT: [u8; 2] = [4, 2];
 
 /// Room (bytes) for header and padding.
 const OVERHEAD: usize = 2048;
@@ -46,38 +48,34 @@ impl std::str::FromStr for Uniform {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axes {
     /// Lateral displacement of the tape-circle point.
-    pub lateral: Vec<f32>,
+    pub lateral: Vec<f64>,
     /// Yaw.
-    pub yaw: Vec<f32>,
+    pub yaw: Vec<f64>,
     /// Roll about the rigid one.
-    pub roll: Vec<f32>,
+    pub roll: Vec<f64>,
     /// Height about the rigid one.
-    pub vertical: Vec<f32>,
-    /// Of the rigid maps: lateral, yaw, roll offset.
-    rigid: [Vec<f32>; 3],
+    pub vertical: Vec<f64>,
+    /// Of the rigid map: lateral, yaw.
+    rigid: [Vec<f64>; 2],
 }
 
 impl Axes {
-    pub(super) fn new(lateral: Vec<f32>, yaw: Vec<f32>, roll: Vec<f32>, vertical: Vec<f32>) -> Self {
-        let [l, y, r] = REFINEMENT;
-        let rigid = [divided(&lateral, l), divided(&yaw, y), divided(&roll, r)];
+    pub(super) fn new(lateral: Vec<f64>, yaw: Vec<f64>, roll: Vec<f64>, vertical: Vec<f64>) -> Self {
+        let [l, y] = REFINEMENT;
+        let rigid = [divided(&lateral, l), divided(&yaw, y)];
         Self { lateral, yaw, roll, vertical, rigid }
     }
 
     /// What a part of a table is solved on: the nodes around these lateral intervals, of the records and of the rigid
-    /// maps.
+    /// map.
     pub(super) fn around(&self, lateral: &[usize]) -> Self {
         let parts = usize::from(REFINEMENT[0]);
-        let taken = |nodes: &[f32], parts: usize| {
+        let taken = |nodes: &[f64], parts: usize| {
             let wanted: BTreeSet<usize> = lateral.iter().flat_map(|&cell| parts * cell..=parts * (cell + 1)).collect();
-            wanted.into_iter().map(|i| nodes[i]).collect::<Vec<f32>>()
+            wanted.into_iter().map(|i| nodes[i]).collect::<Vec<f64>>()
         };
-        let [rigid, yaw, roll] = &self.rigid;
-        Self {
-            lateral: taken(&self.lateral, 1),
-            rigid: [taken(rigid, parts), yaw.clone(), roll.clone()],
-            ..self.clone()
-        }
+        let [rigid, yaw] = &self.rigid;
+        Self { lateral: taken(&self.lateral, 1), rigid: [taken(rigid, parts), yaw.clone()], ..self.clone() }
     }
 
     /// Evenly spaced axes by counts.
@@ -104,7 +102,7 @@ impl Axes {
         };
         let [low, high] = grid.vertical_m.range;
         let vertical = match grid.vertical_m.nodes {
-            Nodes::Auto if low < 0.0 && high > 0.0 => vec![low as f32, 0.0, high as f32],
+            Nodes::Auto if low < 0.0 && high > 0.0 => vec![single(below_zero(low, high)), 0.0, single(high)],
             _ => evenly(grid.vertical_m.range, count(&grid.vertical_m, VERTICAL)),
         };
         let axes = Self::new(
@@ -129,11 +127,11 @@ impl Axes {
 
     /// Upper bound of the bytes of a table with these axes.
     pub(super) fn bytes(&self, sides: usize) -> usize {
-        let [lateral, yaw, roll] = self.rigid.each_ref().map(Vec::len);
-        let maps = 4 * lateral * yaw * (roll + 1);
+        let [lateral, yaw] = self.rigid.each_ref().map(Vec::len);
+        let map = flangeway::layout::RIGID * lateral * yaw;
         let axes: usize =
             self.all().iter().map(|nodes| (flangeway::layout::NODE + 2 * BINS_A_NODE) * nodes.len()).sum();
-        OVERHEAD + axes + sides * (maps + flangeway::layout::RECORD * self.nodes())
+        OVERHEAD + axes + sides * (map + flangeway::layout::RECORD * self.nodes())
     }
 
     /// Whether the kernel's constant-time search takes these axes: bins that part all nodes, and not too many.
@@ -144,15 +142,15 @@ impl Axes {
             .all(|(name, nodes)| OwnedAxis::new(name, nodes).is_ok_and(|axis| axis.bins() <= BINS_A_NODE * nodes.len()))
     }
 
-    /// Nodes of the rigid maps: lateral, yaw, roll offset, every interval of the records' axes divided by
-    /// [`REFINEMENT`]. The image does not hold them.
-    pub(super) fn rigid(&self) -> [&[f32]; 3] {
-        let [lateral, yaw, roll] = &self.rigid;
-        [lateral, yaw, roll]
+    /// Nodes of the rigid map: lateral, yaw, every interval of the records' axes divided by [`REFINEMENT`]. The image does
+    /// not hold them.
+    pub(super) fn rigid(&self) -> [&[f64]; 2] {
+        let [lateral, yaw] = &self.rigid;
+        [lateral, yaw]
     }
 
     /// All axes in the order of the image.
-    pub(super) fn all(&self) -> [&[f32]; 4] {
+    pub(super) fn all(&self) -> [&[f64]; 4] {
         [&self.lateral, &self.yaw, &self.roll, &self.vertical]
     }
 }
@@ -161,16 +159,33 @@ impl Axes {
 pub(super) const BINS_A_NODE: usize = 16;
 
 /// Each interval divided into `parts`.
-fn divided(nodes: &[f32], parts: u8) -> Vec<f32> {
-    let inner = |w: &[f32]| {
-        let (a, b) = (f64::from(w[0]), f64::from(w[1]));
-        (0..parts).map(|k| (a + (b - a) * f64::from(k) / f64::from(parts)) as f32).collect::<Vec<_>>()
+fn divided(nodes: &[f64], parts: u8) -> Vec<f64> {
+    let inner = |w: &[f64]| {
+        let (a, b) = (w[0], w[1]);
+        (0..parts).map(move |k| a + (b - a) * f64::from(k) / f64::from(parts)).collect::<Vec<_>>()
     };
     nodes.windows(2).flat_map(inner).chain(nodes.last().copied()).collect()
 }
 
-fn evenly([first, last]: [f64; 2], count: usize) -> Vec<f32> {
-    (0..count).map(|i| (first + (last - first) * i as f64 / (count - 1) as f64) as f32).collect()
+/// The low end of an axis with a node at zero: `low`, or as little below it as makes it a whole number of `high`'s eighths
+/// or larger parts. The kernel's search wants nodes on an even lattice, and not too fine a one.
+fn below_zero(low: f64, high: f64) -> f64 {
+    let end = |parts: i32| {
+        let part = high / f64::from(parts);
+        -part * (-low / part - 1e-6).ceil()
+    };
+    (1..=8).map(end).fold(f64::NEG_INFINITY, |best, end| if end > best + 1e-9 * high { end } else { best })
+}
+
+/// Nodes where bins begin, as the image has them.
+fn evenly(range: [f64; 2], count: usize) -> Vec<f64> {
+    let [first, last] = range.map(single);
+    (0..count - 1).map(|i| bin_start(first, last, count - 1, i)).chain([last]).collect()
+}
+
+/// An end of an axis: a number that `f32` holds, as the kernel wants it.
+fn single(end: f64) -> f64 {
+    f64::from(end as f32)
 }
 
 #[cfg(test)]
@@ -183,6 +198,13 @@ mod tests {
         for bad in ["121x9x25", "121x9x25x1", "0x9x25x21", "121x9x25x21x3", "ax9x25x21", ""] {
             assert!(bad.parse::<Uniform>().is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn zero_lies_on_the_lattice() {
+        assert_eq!(below_zero(-5e-5, 1.5e-4) as f32, -5e-5);
+        assert!((below_zero(-3.7e-5, 2.31e-4) + 2.31e-4 / 6.0).abs() < 1e-12);
+        assert!((below_zero(-1e-4, 1e-5) + 1e-4).abs() < 1e-12);
     }
 
     #[test]

@@ -125,8 +125,8 @@ impl Checkpoint {
         let bound = *BOUNDS.get(usize::from(bound))?;
         let mut axis = || {
             let count = u32::from_le_bytes(*rest.split_off(..4)?.first_chunk()?) as usize;
-            let bytes = rest.split_off(..4 * count)?;
-            Some(bytes.as_chunks().0.iter().map(|b| f32::from_le_bytes(*b)).collect::<Vec<f32>>())
+            let bytes = rest.split_off(..8 * count)?;
+            Some(bytes.as_chunks().0.iter().map(|b| f64::from_le_bytes(*b)).collect::<Vec<f64>>())
         };
         let (lateral, yaw, roll, vertical) = (axis()?, axis()?, axis()?, axis()?);
         Some((Axes::new(lateral, yaw, roll, vertical), bound))

@@ -40,16 +40,16 @@ pub(super) fn solve(
         return Ok(Vec::new());
     }
     let plane = axes.lateral.iter().flat_map(|&u| axes.yaw.iter().map(move |&yaw| (u, yaw)));
-    let columns: Vec<[f32; 3]> = plane.flat_map(|(u, yaw)| axes.roll.iter().map(move |&roll| [u, yaw, roll])).collect();
+    let columns: Vec<[f64; 3]> = plane.flat_map(|(u, yaw)| axes.roll.iter().map(move |&roll| [u, yaw, roll])).collect();
     let mut nodes = checkpoint.solved(sampler.side, axes.vertical.len());
     let done = nodes.len() / axes.vertical.len();
     let bar = progress::bar(columns.len() as u64, "half-space");
     bar.set_position(done as u64);
     for batch in columns[done..].chunks(BATCH) {
-        let solve = |&at: &[f32; 3]| {
+        let solve = |&at: &[f64; 3]| {
             let pose = sampler.touching_pose(at);
             let mut column = pair.column(sampler.side, &pose);
-            axes.vertical.iter().map(|&z| column.slots(pose.vertical + f64::from(z))).collect::<Vec<_>>()
+            axes.vertical.iter().map(|&z| column.slots(pose.vertical + z)).collect::<Vec<_>>()
         };
         let solved: Vec<Vec<[SlotState; SLOTS]>> = batch.par_iter().map(solve).collect();
         let solved: Vec<[SlotState; SLOTS]> = solved.into_iter().flatten().collect();

@@ -10,7 +10,7 @@ mod checkpoint;
 mod fit;
 mod half_space;
 mod quantise;
-mod rigid_maps;
+mod rigid_map;
 mod sampler;
 mod shard;
 mod solved;
@@ -112,8 +112,7 @@ fn finish(recipe: &Recipe, pair: &Pair, table: Assembled, bound: Bound) -> Resul
 struct CompiledSide {
     /// Node values before quantisation.
     nodes: Vec<[SlotState; SLOTS]>,
-    roll: Vec<f32>,
-    vertical: Vec<f32>,
+    rigid: Vec<[f32; 4]>,
     records: Vec<[i16; LANES]>,
     scales: Scales,
 }
@@ -134,7 +133,7 @@ impl Assembled {
 
 impl CompiledSide {
     fn new(pair: &Pair, side: Side, axes: &Axes, values: NodeValues, solved: Solved) -> Self {
-        let Solved { roll, vertical, mut nodes, points, half_space } = solved;
+        let Solved { rigid, mut nodes, points, half_space } = solved;
         let prepared = (!half_space.is_empty()).then(|| nodes.clone());
         borrow_geometry(&mut nodes, axes);
         if values == NodeValues::Fitted {
@@ -145,11 +144,11 @@ impl CompiledSide {
         }
         let scales = quantise::scales(&nodes, pair.body(side).boundaries());
         let records = nodes.par_iter().map(|states| quantise::record(states, &scales)).collect();
-        Self { nodes, roll, vertical, records, scales }
+        Self { nodes, rigid, records, scales }
     }
 
     fn parts(&self) -> SideParts<'_> {
-        SideParts { rigid_roll: &self.roll, rigid_vertical: &self.vertical, records: &self.records }
+        SideParts { rigid: &self.rigid, records: &self.records }
     }
 }
 

@@ -25,8 +25,8 @@ use crate::image::write_atomically;
 use crate::pair::Pair;
 use crate::recipe::Recipe;
 
-const AXES_MAGIC: &[u8; 8] = b"FWAXES01";
-const SHARD_MAGIC: &[u8; 8] = b"FWPART01";
+const AXES_MAGIC: &[u8; 8] = b"FWAXES02";
+const SHARD_MAGIC: &[u8; 8] = b"FWPART02";
 
 /// Which shard of how many, as `i/n` from `1/n` to `n/n`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -65,7 +65,7 @@ pub struct Settled {
     /// Contents of the profile files by the names that the recipe gives them.
     profiles: BTreeMap<String, Vec<u8>>,
     /// Lateral, yaw, roll, vertical.
-    axes: [Vec<f32>; 4],
+    axes: [Vec<f64>; 4],
     /// What ended their refinement.
     pub bound: Bound,
 }

@@ -6,7 +6,7 @@ use super::axes::{Axes, REFINEMENT};
 use super::checkpoint::Checkpoint;
 use super::fit::{self, Points};
 use super::half_space;
-use super::rigid_maps;
+use super::rigid_map;
 use super::sampler::Sampler;
 use crate::contact::SlotState;
 use crate::error::Result;
@@ -18,9 +18,8 @@ use crate::recipe::NodeValues;
 /// arrays run along the lateral axis first, so intervals in their order make up the whole.
 #[derive(Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Solved {
-    /// The rigid maps, as in the image.
-    pub(super) roll: Vec<f32>,
-    pub(super) vertical: Vec<f32>,
+    /// The rigid map, as in the image.
+    pub(super) rigid: Vec<[f32; 4]>,
     /// States at the nodes of the records.
     pub(super) nodes: Vec<[SlotState; SLOTS]>,
     /// Poses inside the cells that node values are fitted to; none where they are sampled.
@@ -63,7 +62,7 @@ impl Solved {
         lateral: &[usize],
     ) -> Result<(Self, Vec<Points>)> {
         sampler.prepare(&axes.around(lateral))?;
-        let (roll, vertical) = rigid_maps::maps(sampler, axes);
+        let rigid = rigid_map::map(sampler, axes);
         let mut nodes: Vec<[SlotState; SLOTS]> = Vec::with_capacity(axes.nodes());
         for &u in &axes.lateral {
             for &yaw in &axes.yaw {
@@ -74,16 +73,16 @@ impl Solved {
         }
         let points = match values {
             NodeValues::Fitted => {
-                fit::draw(&fit::Drawing::new(pair, sampler.side, axes, &roll, &vertical)?, axes, &nodes, lateral)
+                fit::draw(&fit::Drawing::new(pair, sampler.side, axes, &rigid)?, axes, &nodes, lateral)
             }
             NodeValues::Sampled => lateral.iter().map(|_| Points::default()).collect(),
         };
-        Ok((Self { roll, vertical, nodes, ..Self::default() }, points))
+        Ok((Self { rigid, nodes, ..Self::default() }, points))
     }
 
     /// The part of one interval, without its poses.
     fn interval(&self, axes: &Axes, interval: usize) -> Self {
-        let [roll, vertical, nodes] = lengths(axes);
+        let [rigid, nodes] = lengths(axes);
         let refined = usize::from(REFINEMENT[0]);
         let last = usize::from(interval + 2 == axes.lateral.len());
         let rows = refined * interval..refined * (interval + 1) + last;
@@ -91,8 +90,7 @@ impl Solved {
             all.get(nodes * interval..nodes * (interval + 1 + last)).unwrap_or_default().to_vec()
         };
         Self {
-            roll: self.roll[roll * rows.start..roll * rows.end].to_vec(),
-            vertical: self.vertical[vertical * rows.start..vertical * rows.end].to_vec(),
+            rigid: self.rigid[rigid * rows.start..rigid * rows.end].to_vec(),
             nodes: part(&self.nodes),
             half_space: part(&self.half_space),
             points: Points::default(),
@@ -101,8 +99,7 @@ impl Solved {
 
     /// Appends the part of the interval that follows.
     pub(super) fn append(&mut self, mut next: Self) {
-        self.roll.append(&mut next.roll);
-        self.vertical.append(&mut next.vertical);
+        self.rigid.append(&mut next.rigid);
         self.nodes.append(&mut next.nodes);
         self.points.append(next.points);
         self.half_space.append(&mut next.half_space);
@@ -110,21 +107,19 @@ impl Solved {
 
     /// Whether this is all of a table of these axes.
     pub(super) fn fits(&self, axes: &Axes) -> bool {
-        let [roll, vertical, nodes] = lengths(axes);
+        let [rigid, nodes] = lengths(axes);
         let rows = axes.rigid()[0].len();
-        let counts = (self.roll.len(), self.vertical.len(), self.nodes.len());
-        counts == (roll * rows, vertical * rows, nodes * axes.lateral.len())
+        (self.rigid.len(), self.nodes.len()) == (rigid * rows, nodes * axes.lateral.len())
             && (self.half_space.is_empty() || self.half_space.len() == self.nodes.len())
             && self.points.places.len() == self.points.points.len()
             && self.points.places.iter().all(|place| place.is_in(axes))
     }
 }
 
-/// Values of rigid roll and rigid height in a row of the rigid maps, and nodes of the records in a plane, at one lateral
-/// node.
-fn lengths(axes: &Axes) -> [usize; 3] {
-    let [_, yaw, roll] = axes.rigid().map(<[f32]>::len);
-    [yaw, yaw * roll, axes.nodes() / axes.lateral.len()]
+/// Nodes in a row of the rigid map, and of the records in a plane, at one lateral node.
+fn lengths(axes: &Axes) -> [usize; 2] {
+    let [_, yaw] = axes.rigid().map(<[f64]>::len);
+    [yaw, axes.nodes() / axes.lateral.len()]
 }
 
 /// States at the nodes of some lateral nodes, put where they belong among those of all; none of none.
@@ -132,10 +127,10 @@ fn spread(part: &[[SlotState; SLOTS]], around: &Axes, axes: &Axes) -> Vec<[SlotS
     if part.is_empty() {
         return Vec::new();
     }
-    let [_, _, plane] = lengths(axes);
+    let [_, plane] = lengths(axes);
     let mut planes = part.chunks(plane);
     let mut taken = around.lateral.iter().peekable();
     let absent = vec![[SlotState::ABSENT; SLOTS]; plane];
-    let of = |u: &f32| taken.next_if_eq(&u).and_then(|_| planes.next()).unwrap_or(&absent).to_vec();
+    let of = |u: &f64| taken.next_if_eq(&u).and_then(|_| planes.next()).unwrap_or(&absent).to_vec();
     axes.lateral.iter().flat_map(of).collect()
 }

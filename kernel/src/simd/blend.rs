@@ -4,7 +4,7 @@
 use core::arch::x86_64::*;
 use core::sync::atomic::{Ordering, compiler_fence};
 
-use super::{Two, numbers};
+use super::{Quad, numbers};
 use crate::blend::{BLOCK, Cell, FINE, FINE_BITS, FINE_MASK, FINE_STEP, LaneScales, Lanes, edges, fractions};
 use crate::channel::LANES;
 use crate::layout::RECORD;
@@ -24,48 +24,40 @@ impl Weights {
     #[inline(always)]
     fn new(cell: &Cell) -> Self {
         unsafe {
-            let [a, b, c, d] = cell.sums;
             // Rounded to the nearest integer, half to even, as `whole` does.
-            let four = |a: Two, b: Two| _mm_unpacklo_epi64(_mm_cvtpd_epi32(a.0), _mm_cvtpd_epi32(b.0));
-            let (low, high) = (four(a, b), four(c, d));
-            let mask = _mm_set1_epi32(FINE_MASK);
+            let [even, odd] = cell.sums.map(Quad::rounded);
+            let (low, high) = (_mm_unpacklo_epi32(even, odd), _mm_unpackhi_epi32(even, odd));
+            let (coarse, mask) = (|sums| _mm_srai_epi32::<{ FINE_BITS as i32 }>(sums), _mm_set1_epi32(FINE_MASK));
             Self {
-                coarse: differences(
-                    _mm_srli_epi32::<{ FINE_BITS as i32 }>(low),
-                    _mm_srli_epi32::<{ FINE_BITS as i32 }>(high),
-                ),
-                fine: differences(_mm_and_si128(low, mask), _mm_and_si128(high, mask)),
+                coarse: differences(_mm_packs_epi32(coarse(low), coarse(high))),
+                fine: differences(_mm_packs_epi32(_mm_and_si128(low, mask), _mm_and_si128(high, mask))),
             }
         }
     }
 }
 
-/// before - sum for eight running sums, as `i16`.
+/// sum - before for eight running sums.
 #[inline(always)]
-fn differences(low: __m128i, high: __m128i) -> __m128i {
-    unsafe {
-        let low_before = _mm_slli_si128::<4>(low);
-        let high_before = _mm_or_si128(_mm_slli_si128::<4>(high), _mm_srli_si128::<12>(low));
-        _mm_packs_epi32(_mm_sub_epi32(low_before, low), _mm_sub_epi32(high_before, high))
-    }
+fn differences(sums: __m128i) -> __m128i {
+    unsafe { _mm_sub_epi16(sums, _mm_slli_si128::<2>(sums)) }
 }
 
-/// Sixteen bytes of a record: lanes 8 V to 8 V + 8.
+/// Sixteen bytes of an edge's lower (node 0) or upper record: lanes 8 V to 8 V + 8.
 #[cfg(any(test, not(target_feature = "avx2")))]
 #[inline(always)]
-fn load_128<const V: usize>(record: &[u8; RECORD]) -> __m128i {
-    let bytes: &[[u8; 16]; 4] = record.as_chunks().0.first_chunk().unwrap_or(&[[0; 16]; 4]);
+fn load_128<const V: usize>(edge: &[u8; 2 * RECORD], node: usize) -> __m128i {
+    let bytes: &[[u8; 16]; 8] = edge.as_chunks().0.first_chunk().unwrap_or(&[[0; 16]; 8]);
     // The pointer is that of sixteen bytes, and the load asks for no alignment.
-    unsafe { _mm_loadu_si128(bytes[V].as_ptr().cast()) }
+    unsafe { _mm_loadu_si128(bytes[4 * node + V].as_ptr().cast()) }
 }
 
-/// Thirty-two bytes of a record: lanes 16 V to 16 V + 16.
+/// Thirty-two bytes of an edge's lower (node 0) or upper record: lanes 16 V to 16 V + 16.
 #[cfg(target_feature = "avx2")]
 #[inline(always)]
-fn load_256<const V: usize>(record: &[u8; RECORD]) -> __m256i {
-    let bytes: &[[u8; 32]; 2] = record.as_chunks().0.first_chunk().unwrap_or(&[[0; 32]; 2]);
+fn load_256<const V: usize>(edge: &[u8; 2 * RECORD], node: usize) -> __m256i {
+    let bytes: &[[u8; 32]; 4] = edge.as_chunks().0.first_chunk().unwrap_or(&[[0; 32]; 4]);
     // The pointer is that of thirty-two bytes, and the load asks for no alignment.
-    unsafe { _mm256_loadu_si256(bytes[V].as_ptr().cast()) }
+    unsafe { _mm256_loadu_si256(bytes[2 * node + V].as_ptr().cast()) }
 }
 
 /// Weights as vectors: pairs of `i16` for edges 0 and 1, 2 and 3, 4 and 5, 6 and 7, repeated over the vector.
@@ -81,13 +73,13 @@ fn pairs(w: __m128i) -> [__m128i; 4] {
     }
 }
 
-/// The edges' records, lower and upper, two edges together.
-type EdgePairs<'a> = [[&'a [[u8; RECORD]; 2]; 2]; 4];
+/// The edges' records, two edges together.
+type EdgePairs<'a> = [[&'a [u8; 2 * RECORD]; 2]; 4];
 
 #[inline(always)]
-fn edge_pairs<'a>(records: &'a [[u8; RECORD]], cell: &Cell) -> EdgePairs<'a> {
-    let [a, b, c, d, e, f, g, h] = edges(records, cell);
-    [[a, b], [c, d], [e, f], [g, h]]
+fn edge_pairs<'a>(records: &'a [[u8; RECORD]], cell: &Cell) -> Option<EdgePairs<'a>> {
+    let [a, b, c, d, e, f, g, h] = edges(records, cell)?;
+    Some([[a, b], [c, d], [e, f], [g, h]])
 }
 
 /// Four sums at the lower node and the rise to the upper node, as `f32`.
@@ -100,10 +92,11 @@ fn base_and_rise([low, high]: [__m128i; 2]) -> [__m128; 2] {
 /// [`portable`](crate::blend::portable) with vectors of 128 bits.
 #[cfg(any(test, not(target_feature = "avx2")))]
 #[inline(always)]
-pub(crate) fn blend_128(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales, lanes: &mut Lanes) {
-    let edges = edge_pairs(records, cell);
+pub(crate) fn blend_128(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales) -> Option<Lanes> {
+    let edges = edge_pairs(records, cell)?;
     let weights = Weights::new(cell);
     let weights = (pairs(weights.coarse), pairs(weights.fine));
+    let mut lanes = Lanes::ZERO;
     if let [a, b, c, d, e, f, g, h] = lanes.0.as_chunks_mut().0 {
         // The fences keep the compiler from interleaving the four, which would spill registers. They cost nothing.
         [*a, *b] = eight::<0>(&edges, &weights, cell, scales);
@@ -114,6 +107,7 @@ pub(crate) fn blend_128(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScal
         compiler_fence(Ordering::SeqCst);
         [*g, *h] = eight::<3>(&edges, &weights, cell, scales);
     }
+    Some(lanes)
 }
 
 /// Lanes 8 V to 8 V + 8.
@@ -130,9 +124,8 @@ fn eight<const V: usize>(
         let mut sums = [[_mm_setzero_si128(); 2]; 2];
         let mut fine_sums = sums;
         for ((pair, coarse), fine) in edges.iter().zip(coarse).zip(fine) {
-            let [[a_low, a_high], [b_low, b_high]] = pair;
-            for (node, (a, b)) in [(a_low, b_low), (a_high, b_high)].into_iter().enumerate() {
-                let (a, b) = (load_128::<V>(a), load_128::<V>(b));
+            for node in 0..2 {
+                let [a, b] = pair.map(|edge| load_128::<V>(edge, node));
                 for (half, q) in [_mm_unpacklo_epi16(a, b), _mm_unpackhi_epi16(a, b)].into_iter().enumerate() {
                     let (sum, fine_sum) = (&mut sums[half][node], &mut fine_sums[half][node]);
                     *sum = _mm_add_epi32(*sum, _mm_madd_epi16(q, *coarse));
@@ -167,21 +160,19 @@ fn four([a, b, c, d]: [f32; 4]) -> __m128 {
 /// [`portable`](crate::blend::portable) with vectors of 256 bits.
 #[cfg(target_feature = "avx2")]
 #[inline(always)]
-pub(crate) fn blend_256(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales, lanes: &mut Lanes) {
+pub(crate) fn blend_256(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales) -> Option<Lanes> {
     unsafe {
-        let edges = edge_pairs(records, cell);
+        let edges = edge_pairs(records, cell)?;
         let weights = Weights::new(cell);
-        let wide = |w: __m128i| {
-            let [a, b, c, d] = pairs(w);
-            let wide = |pair| _mm256_broadcastsi128_si256(pair);
-            [wide(a), wide(b), wide(c), wide(d)]
-        };
+        let wide = |w: __m128i| pairs(w).map(|pair| _mm256_broadcastsi128_si256(pair));
         let weights = (wide(weights.coarse), wide(weights.fine));
+        let mut lanes = Lanes::ZERO;
         if let [low, high] = lanes.0.as_chunks_mut().0 {
             *low = sixteen::<0>(&edges, &weights, cell, scales);
             compiler_fence(Ordering::SeqCst);
             *high = sixteen::<1>(&edges, &weights, cell, scales);
         }
+        Some(lanes)
     }
 }
 
@@ -200,9 +191,8 @@ fn sixteen<const V: usize>(
         let mut fine_sums = sums;
         let is_fine = |half: usize| [FINE[4 * V + half], FINE[4 * V + half + 2]];
         for ((pair, coarse), fine) in edges.iter().zip(coarse).zip(fine) {
-            let [[a_low, a_high], [b_low, b_high]] = pair;
-            for (node, (a, b)) in [(a_low, b_low), (a_high, b_high)].into_iter().enumerate() {
-                let (a, b) = (load_256::<V>(a), load_256::<V>(b));
+            for node in 0..2 {
+                let [a, b] = pair.map(|edge| load_256::<V>(edge, node));
                 for (half, q) in [_mm256_unpacklo_epi16(a, b), _mm256_unpackhi_epi16(a, b)].into_iter().enumerate() {
                     let (sum, fine_sum) = (&mut sums[half][node], &mut fine_sums[half][node]);
                     *sum = _mm256_add_epi32(*sum, _mm256_madd_epi16(q, *coarse));

@@ -133,7 +133,7 @@ mod tests {
 
     /// Places all along the lateral axis, in the middle of the other three, and the grid they are in.
     fn along_lateral() -> (Stencil, Vec<Place>, Vec<f64>) {
-        let lateral: Vec<f32> = (0..=INTERVALS).map(|i| i as f32).collect();
+        let lateral: Vec<f64> = (0..=INTERVALS).map(|i| i as f64).collect();
         let ends = vec![0.0, 1.0];
         let stencil = Stencil::new(&Axes::new(lateral, ends.clone(), ends.clone(), ends));
         let place = |k: usize| {

@@ -9,7 +9,7 @@ use crate::compile::quantise;
 use crate::compile::stencil::Place;
 use crate::error::Result;
 use crate::hertz;
-use crate::image::{OwnedAxis, OwnedRigidMaps};
+use crate::image::{OwnedAxis, OwnedRigidMap};
 use crate::pair::Pair;
 use crate::progress;
 use crate::verify::{LOADS, stream};
@@ -69,25 +69,19 @@ impl Points {
 pub(in crate::compile) struct Drawing<'a> {
     pair: &'a Pair,
     side: Side,
-    maps: OwnedRigidMaps,
+    map: OwnedRigidMap,
     /// Lateral, yaw, roll, vertical.
-    nodes: [&'a [f32]; 4],
+    nodes: [&'a [f64]; 4],
     axes: [OwnedAxis; 4],
 }
 
 impl<'a> Drawing<'a> {
-    /// A side's table, by its axes and rigid maps.
-    pub(in crate::compile) fn new(
-        pair: &'a Pair,
-        side: Side,
-        axes: &'a Axes,
-        roll: &[f32],
-        vertical: &[f32],
-    ) -> Result<Self> {
+    /// A side's table, by its axes and rigid map.
+    pub(in crate::compile) fn new(pair: &'a Pair, side: Side, axes: &'a Axes, rigid: &[[f32; 4]]) -> Result<Self> {
         Ok(Self {
             pair,
             side,
-            maps: OwnedRigidMaps::new([&axes.lateral, &axes.yaw, &axes.roll], REFINEMENT, roll, vertical)?,
+            map: OwnedRigidMap::new([&axes.lateral, &axes.yaw, &axes.roll], REFINEMENT, rigid)?,
             nodes: [&axes.lateral, &axes.yaw, &axes.roll, &axes.vertical],
             axes: [
                 OwnedAxis::new(AxisName::Lateral, &axes.lateral)?,
@@ -132,12 +126,12 @@ impl<'a> Drawing<'a> {
 
     /// Poses of one cell: `columns`³ columns, one anywhere in each part of it.
     fn cell(&self, cell: [usize; 3], columns: usize) -> Vec<(Place, Point)> {
-        let ends = |axis: usize| [cell[axis], cell[axis] + 1].map(|i| f64::from(self.nodes[axis][i]));
+        let ends = |axis: usize| [cell[axis], cell[axis] + 1].map(|i| self.nodes[axis][i]);
         let volume: f64 = (0..3)
             .map(|axis| {
                 let nodes = self.nodes[axis];
                 let [from, to] = ends(axis);
-                (to - from) / f64::from(nodes[nodes.len() - 1] - nodes[0]) * (nodes.len() - 1) as f64
+                (to - from) / (nodes[nodes.len() - 1] - nodes[0]) * (nodes.len() - 1) as f64
             })
             .product();
         let count = columns.pow(3);
@@ -161,7 +155,7 @@ impl<'a> Drawing<'a> {
     /// Poses at several heights, each given as 0 to 1 over the heights looked at.
     fn column(&self, at: &Coordinates, heights: [f64; HEIGHTS], weight: f32) -> Vec<(Place, Point)> {
         let [low, high] = HEIGHT_SHARES.map(|share| share * self.highest());
-        let pose = self.maps.view().pose(self.pair.body(self.side).wheel().geometry(), at);
+        let pose = self.map.view().pose(self.pair.body(self.side).wheel().geometry(), at);
         let mut column = self.pair.column(self.side, &pose);
         let [lateral, yaw, roll, vertical] = self.axes.each_ref().map(OwnedAxis::view);
         let plane = [lateral.locate(at.lateral), yaw.locate(at.yaw), roll.locate(at.roll_offset)];
