@@ -15,13 +15,11 @@
 //! whole range of `i16`, and in proportion less if they differ less.
 
 use crate::axis::Places;
-use crate::channel::{Channel, LANES, SLOTS, Scales, Slot};
+use crate::channel::{BLOCK, Channel, LANES, SLOTS, Scales, Slot, place};
 use crate::corners::eight;
 use crate::layout::RECORD;
 use crate::math::{Quad, Two, single};
 
-/// Lanes of a block: a 128-bit vector of `i32` or `f32`.
-pub(crate) const BLOCK: usize = 4;
 /// Bits of the fine weights.
 pub(crate) const FINE_BITS: u32 = 12;
 /// Sum of all weights, -2²⁷.
@@ -218,9 +216,9 @@ pub(crate) fn weights(cell: &Cell) -> [EdgeWeights; 8] {
 #[inline(always)]
 fn sums(edges: &Edges<'_>, weights: &[EdgeWeights; 8], lane: usize, of: impl Fn(&EdgeWeights) -> i16) -> (i32, i32) {
     edges.iter().zip(weights).fold((0, 0), |(lower, upper), (pair, weights)| {
-        let q = |lane| i32::from(i16::from_le_bytes(pair.as_chunks().0.get(lane).copied().unwrap_or_default()));
+        let q = |at| i32::from(i16::from_le_bytes(pair.as_chunks().0.get(at).copied().unwrap_or_default()));
         let weight = i32::from(of(weights));
-        (lower + weight * q(lane), upper + weight * q(LANES + lane))
+        (lower + weight * q(place(lane)), upper + weight * q(LANES + place(lane)))
     })
 }
 
@@ -279,7 +277,7 @@ mod tests {
 
     /// The corners' product weights and the vertical lines, in `f64`.
     fn exact(records: &[[u8; RECORD]], [u, p, r, t]: [f64; 4], lane: usize) -> f64 {
-        let q = |index: usize| f64::from(i16::from_le_bytes(records[index].as_chunks().0[lane]));
+        let q = |index: usize| f64::from(i16::from_le_bytes(records[index].as_chunks().0[place(lane)]));
         let weight = |k: usize| {
             let side = |t: f64, bit: usize| if k >> bit & 1 == 1 { t } else { 1.0 - t };
             side(u, 2) * side(p, 1) * side(r, 0)
@@ -310,7 +308,9 @@ mod tests {
             #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
             {
                 assert_eq!(bits(&lanes), bits(&crate::simd::blend_128(&records, &cell, &scales).unwrap()));
-                assert_eq!(bits(&lanes), bits(&crate::simd::blend(&records, &cell, &scales).unwrap()));
+                if let Some(avx2) = crate::simd::Avx2::found() {
+                    assert_eq!(bits(&lanes), bits(&crate::simd::blend_256(avx2, &records, &cell, &scales).unwrap()));
+                }
             }
         }
     }

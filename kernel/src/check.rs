@@ -4,7 +4,7 @@
 use core::ops::Range;
 
 use crate::axis::{Axis, AxisName};
-use crate::channel::{CONFORMAL_LANE, Channel, LANES, RESERVED_LANE, Slot};
+use crate::channel::{CONFORMAL_LANE, Channel, LANES, RESERVED_LANE, Slot, place};
 use crate::error::TableError;
 use crate::header::{Header, MAX_PARTS, SideHeader};
 use crate::layout::{
@@ -159,8 +159,9 @@ pub(crate) fn records<'a>(image: &'a [u8], section: &Range<usize>) -> Result<&'a
     let records = chunks(image, section);
     for (offset, record) in section.clone().step_by(RECORD).zip(records) {
         let lanes = lanes(record);
-        for (lane, value) in lanes.into_iter().enumerate().skip(CONFORMAL_LANE) {
-            if value < 0 || (lane == RESERVED_LANE && value != 0) {
+        for (lane, most) in [(CONFORMAL_LANE, i16::MAX), (RESERVED_LANE, 0)] {
+            let value = lanes.get(lane).copied().unwrap_or_default();
+            if value < 0 || value > most {
                 return Err(TableError::RecordLane { offset, lane, value });
             }
         }
@@ -168,11 +169,11 @@ pub(crate) fn records<'a>(image: &'a [u8], section: &Range<usize>) -> Result<&'a
     Ok(records)
 }
 
-/// The integers of a record.
+/// The integers of a record by lane.
 pub(crate) fn lanes(record: &[u8; RECORD]) -> [i16; LANES] {
     let mut lanes = [0; LANES];
-    for (lane, bytes) in lanes.iter_mut().zip(record.as_chunks().0) {
-        *lane = i16::from_le_bytes(*bytes);
+    for (lane, value) in lanes.iter_mut().enumerate() {
+        *value = i16::from_le_bytes(record.as_chunks().0.get(place(lane)).copied().unwrap_or_default());
     }
     lanes
 }

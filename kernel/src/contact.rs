@@ -4,7 +4,7 @@ use heapless::Vec;
 use nalgebra::Vector3;
 
 use crate::blend::Lanes;
-use crate::channel::{Channel, SLOTS, Slot};
+use crate::channel::{BLOCK, LANES, SLOTS, Slot};
 use crate::displacement::Attitude;
 use crate::flags::Flags;
 use crate::math::{Four, Quad, single};
@@ -154,7 +154,8 @@ struct Candidates {
     third: [Four; 4],
 }
 
-/// The slots' contacts from their blended channels, mirrored back to the wheel that was asked for.
+/// The slots' contacts from their blended channels, mirrored back to the wheel that was asked for. Each block of lanes
+/// holds a channel, see [`Channel::lane`](crate::Channel::lane).
 ///
 /// Force and ellipse (Johnson, Contact Mechanics, 4.2; the paper's lookup), with δ+ = max(δ, 0):
 ///
@@ -163,8 +164,11 @@ struct Candidates {
 /// ```
 #[inline(always)]
 fn rebuild(lanes: &Lanes, frame: &Frame<'_>) -> Candidates {
-    let [indentation, c, k, k_across, e, s, radius_offset, angle, wheel_curvature, rail_curvature] =
-        Channel::ALL.map(|channel| of_slots(lanes, channel));
+    let blocks: &[[f32; BLOCK]; LANES / BLOCK] =
+        lanes.0.as_chunks().0.first_chunk().unwrap_or(&[[0.0; BLOCK]; LANES / BLOCK]);
+    let [indentation, c, k, k_across, e, s, radius_offset, angle] = blocks.each_ref().map(Four::load);
+    let wheel_curvature = Four::fourths([indentation, c, k]);
+    let rail_curvature = Four::fourths([k_across, e, s]);
     let zero = Four::all(0.0);
     let depth = indentation.at_least(zero);
     let root = depth.sqrt();
@@ -178,13 +182,6 @@ fn rebuild(lanes: &Lanes, frame: &Frame<'_>) -> Candidates {
         second: [z, lateral_sign * angle, rolling_radius, s],
         third: [k.at_least(zero) * root, k_across.at_least(zero) * root, wheel_curvature, rail_curvature],
     }
-}
-
-/// A channel of the three slots, and a number that is not used.
-#[inline(always)]
-fn of_slots(lanes: &Lanes, channel: Channel) -> Four {
-    let start = channel.lane(Slot::Tread);
-    Four::load(lanes.0.get(start..start + 4).and_then(<[_]>::first_chunk).unwrap_or(&[0.0; 4]))
 }
 
 /// Contact point in the track frame of the canonical wheel, x mirrored back.
@@ -248,6 +245,7 @@ impl Contacts {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::channel::Channel;
 
     fn tilted(angle: f32) -> Contact {
         Contact { angle, ..Contact::NONE }

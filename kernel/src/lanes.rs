@@ -70,6 +70,13 @@ impl Four {
         self.0.map(Self::all)
     }
 
+    /// The fourth numbers of three, the last of them twice.
+    #[inline(always)]
+    pub(crate) fn fourths(of: [Self; 3]) -> Self {
+        let [a, b, c] = of.map(|Self([.., fourth])| fourth);
+        Self([a, b, c, c])
+    }
+
     /// Rows as columns.
     #[inline(always)]
     pub(crate) fn transpose([a, b, c, d]: [Self; 4]) -> [Self; 4] {
@@ -383,6 +390,7 @@ mod tests {
                     (x / y, v / w),
                     (x.at_least(y), v.at_least(w)),
                     (x.at_least(zero.0).sqrt(), v.at_least(zero.1).sqrt()),
+                    (Four::fourths([x, y, x]), simd::Four::fourths([v, w, v])),
                     (Four::transpose([x, y, x, y])[3], simd::Four::transpose([v, w, v, w])[3]),
                 ];
                 for (index, (x, v)) in pairs.into_iter().enumerate() {

@@ -67,7 +67,8 @@
 //! # Features
 //!
 //! None by default. `micromath` adds `Contact::normal_fast`. `portable` leaves the processor's vector instructions
-//! unused, which changes no bit of any answer.
+//! unused, which changes no bit of any answer; nor does the choice between SSE2 and AVX2, which a table makes by the
+//! processor it is checked on (see [`InstructionSet`]).
 #![no_std]
 #![warn(clippy::std_instead_of_core)]
 #![warn(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_lossless, clippy::cast_precision_loss)]
@@ -93,6 +94,7 @@ mod displacement;
 mod error;
 mod flags;
 mod header;
+mod instructions;
 #[cfg_attr(
     all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable"), not(test)),
     expect(dead_code, reason = "simd has the same")
@@ -107,12 +109,13 @@ mod simd;
 mod table;
 
 pub use axis::{Axis, AxisName, MAX_BINS, NodeBytes, Place, bin_start};
-pub use channel::{CHANNELS, CONFORMAL_LANE, Channel, LANES, RESERVED_LANE, SLOTS, Scale, Scales, Slot};
+pub use channel::{CHANNELS, CONFORMAL_LANE, Channel, LANES, RESERVED_LANE, SLOTS, Scale, Scales, Slot, place};
 pub use contact::{Contact, Contacts};
 pub use displacement::{Attitude, Displacement, displacement, pose_with};
 pub use error::TableError;
 pub use flags::Flags;
 pub use header::{AxisCounts, ErrorFigures, Header, MAX_PARTS, Material, SideHeader};
+pub use instructions::InstructionSet;
 pub use math::{ANGLE_LIMIT, Angle};
 pub use pose::{Canonical, POSE_LIMIT, Pose, Side, WheelGeometry};
 pub use rigid::{Coordinates, RigidMap};

@@ -1,10 +1,11 @@
 //! The kernel's only processor instructions by name, for x86-64: SSE2, which every such processor has, and AVX2 where
-//! the build asks for it (`-C target-feature=+avx2`). The same bits as the portable paths; tests hold them together.
+//! the processor that it runs on has it. The same bits as the portable paths; tests hold them together.
 //!
 //! An intrinsic is unsafe to call because its instruction might not exist. Here each of them does: the module is
-//! compiled only where the whole program may use SSE2, the parts with 256 bits only where it may use AVX2. Only
+//! compiled only where the whole program may use SSE2, and whoever calls for AVX2 has an [`Avx2`] to show. Only
 //! the loads and the prefetch take pointers, and those are made from references to as many bytes as they read.
 
+mod avx2;
 mod blend;
 mod quad;
 
@@ -13,9 +14,8 @@ use core::ops::{Add, Div, Mul, Sub};
 
 use crate::layout::RECORD;
 
-#[cfg(test)]
-pub(crate) use blend::blend_128;
-pub(crate) use blend::widest as blend;
+pub(crate) use avx2::Avx2;
+pub(crate) use blend::{blend_128, blend_256};
 pub(crate) use quad::Quad;
 
 /// Four `f32` that take the same operations; as [`crate::lanes::Four`].
@@ -77,6 +77,11 @@ impl Four {
                 Self(_mm_castsi128_ps(_mm_shuffle_epi32::<0xff>(x))),
             ]
         }
+    }
+
+    #[inline(always)]
+    pub(crate) fn fourths([a, b, c]: [Self; 3]) -> Self {
+        Self(unsafe { _mm_shuffle_ps::<0b11_11_11_10>(_mm_unpackhi_ps(a.0, b.0), c.0) })
     }
 
     #[inline(always)]

@@ -13,6 +13,7 @@ use crate::displacement::{Attitude, Displacement, displacement};
 use crate::error::TableError;
 use crate::flags::Flags;
 use crate::header::{Header, SideHeader};
+use crate::instructions::{Avx2, InstructionSet};
 use crate::layout::{RECORD, Sections, SideSections};
 use crate::math::Two;
 use crate::pose::{Canonical, Pose, Side, WheelGeometry};
@@ -27,6 +28,8 @@ pub struct ContactTable<'a> {
     section: AxisPair<'a>,
     /// Bytes from one record to the next along lateral, yaw and roll offset.
     strides: [u32; 3],
+    /// Whether lookups may use AVX2.
+    avx2: Option<Avx2>,
     right: SideData<'a>,
     left: SideData<'a>,
 }
@@ -71,6 +74,7 @@ impl<'a> ContactTable<'a> {
         axes: [Axis::EMPTY; 4],
         section: AxisPair::EMPTY,
         strides: [0; 3],
+        avx2: None,
         right: SideData::EMPTY,
         left: SideData::EMPTY,
     };
@@ -104,7 +108,8 @@ impl<'a> ContactTable<'a> {
 
     #[inline(never)]
     fn fill(&mut self, image: &'a [u8]) -> Result<(), TableError> {
-        let Self { header, axes, section, strides, right, left } = self;
+        let Self { header, axes, section, strides, avx2, right, left } = self;
+        *avx2 = Avx2::found();
         let bytes = check::envelope(image)?;
         check::header(bytes, header)?;
         let sections = Sections::new(bytes.len(), &header.axes, header.refinement, header.sides());
@@ -138,6 +143,21 @@ impl<'a> ContactTable<'a> {
     #[must_use]
     pub const fn header(&self) -> &Header<'a> {
         &self.header
+    }
+
+    /// The instructions that lookups are made of: the fastest that the processor has.
+    #[must_use]
+    pub const fn instruction_set(&self) -> InstructionSet {
+        InstructionSet::of(self.avx2)
+    }
+
+    /// Has lookups made of other instructions, or of [`InstructionSet::Baseline`] where the processor does not have them.
+    /// Answers stay the same to the last bit.
+    pub fn set_instruction_set(&mut self, set: InstructionSet) {
+        self.avx2 = match set {
+            InstructionSet::Baseline => None,
+            InstructionSet::Avx2 => Avx2::found(),
+        };
     }
 
     /// One of the table's axes.
@@ -192,7 +212,7 @@ impl<'a> ContactTable<'a> {
         let side = self.side(side);
         let plane = side.rigid.plane(at.lateral, at.yaw);
         let (cell, _) = self.cell(&plane, at);
-        side.blend(&cell).map_or([[0.0; CHANNELS]; SLOTS], |lanes| slots(&lanes))
+        side.blend(None, &cell).map_or([[0.0; CHANNELS]; SLOTS], |lanes| slots(&lanes))
     }
 
     /// Asks for the sixteen records of a pose, so that they are in the cache when the lookup comes, while the caller
@@ -222,12 +242,30 @@ impl<'a> ContactTable<'a> {
     /// [`ContactTable::contacts`] into a place of the caller's, which saves a copy.
     #[cfg_attr(target_arch = "arm", inline)]
     pub fn contacts_into(&self, side: Side, pose: &Pose, contacts: &mut Contacts) {
-        self.finish(side, &self.prepare(side, pose), contacts);
+        match self.avx2 {
+            Some(avx2) => avx2.contacts_into(self, side, pose, contacts),
+            None => self.look_up(None, side, pose, contacts),
+        }
     }
 
     /// Contacts of several wheels, as [`ContactTable::contacts`] gives them: the records of up to eight wheels are
     /// asked for before the first is blended. Fills as many places as there are wheels and places for.
     pub fn contacts_many(&self, wheels: &[(Side, Pose)], contacts: &mut [Contacts]) {
+        match self.avx2 {
+            Some(avx2) => avx2.contacts_many(self, wheels, contacts),
+            None => self.look_up_many(None, wheels, contacts),
+        }
+    }
+
+    /// [`ContactTable::contacts_into`], with AVX2 where the caller was compiled for it.
+    #[inline(always)]
+    pub(crate) fn look_up(&self, avx2: Option<Avx2>, side: Side, pose: &Pose, contacts: &mut Contacts) {
+        self.finish(avx2, side, &self.prepare(side, pose), contacts);
+    }
+
+    /// [`ContactTable::contacts_many`] in the same way.
+    #[inline(always)]
+    pub(crate) fn look_up_many(&self, avx2: Option<Avx2>, wheels: &[(Side, Pose)], contacts: &mut [Contacts]) {
         for (wheels, contacts) in wheels.chunks(TOGETHER).zip(contacts.chunks_mut(TOGETHER)) {
             let mut prepared = heapless::Vec::<_, TOGETHER>::new();
             for (side, pose) in wheels {
@@ -237,7 +275,7 @@ impl<'a> ContactTable<'a> {
                 let _ = prepared.push((*side, one));
             }
             for ((side, one), contacts) in prepared.iter().zip(contacts) {
-                self.finish(*side, one, contacts);
+                self.finish(avx2, *side, one, contacts);
             }
         }
     }
@@ -252,12 +290,12 @@ impl<'a> ContactTable<'a> {
 
     /// The rest of it.
     #[inline(always)]
-    fn finish(&self, side: Side, prepared: &Prepared, contacts: &mut Contacts) {
+    fn finish(&self, avx2: Option<Avx2>, side: Side, prepared: &Prepared, contacts: &mut Contacts) {
         let data = self.side(side);
         let Prepared { located, cell, flags } = prepared;
         // Through memory that the compiler cannot see through: it would interleave the blend's parts with what follows,
         // and spill more registers than it saves.
-        let Some(lanes) = data.blend(cell) else { return *contacts = Contacts::NONE };
+        let Some(lanes) = data.blend(avx2, cell) else { return *contacts = Contacts::NONE };
         let lanes = black_box(&lanes);
         let frame = Frame {
             wheel: &data.wheel,
@@ -267,7 +305,7 @@ impl<'a> ContactTable<'a> {
             arm: data.geometry.lateral_position - located.attitude.inwards(&data.geometry),
         };
         let force = contacts.fill(lanes, &frame, located.valid);
-        let [.., conformal, _] = lanes.0;
+        let conformal = lanes.0.get(CONFORMAL_LANE).copied().unwrap_or_default();
         let remarks = *flags
             | Flags::ANGLE_LIMITED.when(located.attitude.yaw.limited | located.attitude.roll.limited)
             | Flags::CONFORMAL.when((conformal > 0.0) & force);
@@ -343,9 +381,13 @@ impl<'a> SideData<'a> {
         self.wheel = Wheel::new(&self.geometry, side);
     }
 
-    /// Blended lanes in their units, by the vector instructions of the build's target. All give the same bits.
+    /// Blended lanes in their units. All ways give the same bits.
     #[inline(always)]
-    fn blend(&self, cell: &Cell) -> Option<Lanes> {
+    #[cfg_attr(
+        not(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable"))),
+        expect(unused_variables, reason = "there is no AVX2")
+    )]
+    fn blend(&self, avx2: Option<Avx2>, cell: &Cell) -> Option<Lanes> {
         #[cfg(all(target_arch = "arm", not(feature = "portable")))]
         return crate::arm::blend(self.records, cell, &self.scales);
         #[cfg(any(
@@ -354,7 +396,10 @@ impl<'a> SideData<'a> {
         ))]
         return crate::blend::portable(self.records, cell, &self.scales);
         #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
-        return crate::simd::blend(self.records, cell, &self.scales);
+        match avx2 {
+            Some(avx2) => crate::simd::blend_256(avx2, self.records, cell, &self.scales),
+            None => crate::simd::blend_128(self.records, cell, &self.scales),
+        }
     }
 }
 
@@ -368,9 +413,6 @@ fn slots(lanes: &Lanes) -> [[f32; CHANNELS]; SLOTS] {
     }
     slots
 }
-
-// The record is laid out as the lanes are taken apart.
-const _: () = assert!(CONFORMAL_LANE == LANES - 2 && Channel::RailCurvature.lane(Slot::Flange) + 1 == CONFORMAL_LANE);
 
 /// Asks for a record's cache line.
 #[inline(always)]

@@ -3,7 +3,7 @@
 #![allow(dead_code, unreachable_pub, reason = "each user takes a part of this")]
 
 use flangeway::layout::{ALIGNMENT, HEADER_AT, Sections, checksum};
-use flangeway::{Channel, ContactTable, Contacts, Header, Pose, Scale, Side, Slot};
+use flangeway::{Channel, ContactTable, Contacts, Header, InstructionSet, Pose, Scale, Side, Slot};
 
 /// The made-up table that damage begins with.
 static INTACT: &[u8] = include_bytes!("../gates/three_contacts.fwt");
@@ -247,10 +247,15 @@ pub fn lookups_stay_finite(table: &ContactTable<'_>, poses: &[Pose]) {
     let wheels: Vec<(Side, Pose)> = poses.iter().flat_map(|pose| Side::ALL.map(|side| (side, *pose))).collect();
     let mut many = vec![Contacts::NONE; wheels.len()];
     table.contacts_many(&wheels, &mut many);
+    // With the instructions that every processor has.
+    let mut plain = table.clone();
+    plain.set_instruction_set(InstructionSet::Baseline);
     for ((side, pose), of_many) in wheels.iter().zip(&many) {
         table.prefetch(*side, pose);
         let contacts = table.contacts(*side, pose);
         assert!(contacts == *of_many, "{contacts:?} {of_many:?}");
+        let by_plain = plain.contacts(*side, pose);
+        assert!(contacts == by_plain, "{contacts:?} {by_plain:?}");
         assert!(contacts.total_normal_force().is_finite());
         for c in &contacts {
             let numbers = [c.indentation, c.angle, c.rolling_radius, c.semi_axes[0], c.semi_axes[1]];

@@ -27,7 +27,7 @@ mod summary;
 
 pub use expand::{expand, plan};
 pub use manifest::{Entry, Manifest, Planned};
-pub use records::{Finish, Record, read as read_records};
+pub use records::{Finish, Record, cpu_seconds, read as read_records};
 pub use run::{Ran, run};
 pub use store::{Folder, State};
 pub use summary::{CELLS, LOAD, Summary, summaries};

@@ -102,8 +102,9 @@ pub(super) fn task() -> Option<String> {
     Some(format!("{}_{}", of("SLURM_ARRAY_JOB_ID")?, of("SLURM_ARRAY_TASK_ID")?))
 }
 
-/// Processor time (s) of this thread so far.
-pub(super) fn cpu_seconds() -> Option<f64> {
+/// Processor time (s) of this thread so far; none where the system does not tell.
+#[must_use]
+pub fn cpu_seconds() -> Option<f64> {
     #[cfg(target_os = "linux")]
     {
         let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);

@@ -4,15 +4,10 @@
 use core::arch::x86_64::*;
 use core::sync::atomic::{Ordering, compiler_fence};
 
-use super::{Quad, numbers};
-use crate::blend::{BLOCK, Cell, FINE, FINE_BITS, FINE_MASK, FINE_STEP, LaneScales, Lanes, edges, fractions};
-use crate::channel::LANES;
+use super::{Avx2, Quad, numbers};
+use crate::blend::{Cell, FINE, FINE_BITS, FINE_MASK, FINE_STEP, LaneScales, Lanes, edges, fractions};
+use crate::channel::{BLOCK, LANES, SLOTS, place};
 use crate::layout::RECORD;
-
-#[cfg(not(target_feature = "avx2"))]
-pub(crate) use blend_128 as widest;
-#[cfg(target_feature = "avx2")]
-pub(crate) use blend_256 as widest;
 
 /// Weights of the edges: pairs of `i16` for two neighbouring edges.
 struct Weights {
@@ -42,8 +37,7 @@ fn differences(sums: __m128i) -> __m128i {
     unsafe { _mm_sub_epi16(sums, _mm_slli_si128::<2>(sums)) }
 }
 
-/// Sixteen bytes of an edge's lower (node 0) or upper record: lanes 8 V to 8 V + 8.
-#[cfg(any(test, not(target_feature = "avx2")))]
+/// Bytes 16 V to 16 V + 16 of an edge's lower (node 0) or upper record.
 #[inline(always)]
 fn load_128<const V: usize>(edge: &[u8; 2 * RECORD], node: usize) -> __m128i {
     let bytes: &[[u8; 16]; 8] = edge.as_chunks().0.first_chunk().unwrap_or(&[[0; 16]; 8]);
@@ -51,8 +45,7 @@ fn load_128<const V: usize>(edge: &[u8; 2 * RECORD], node: usize) -> __m128i {
     unsafe { _mm_loadu_si128(bytes[4 * node + V].as_ptr().cast()) }
 }
 
-/// Thirty-two bytes of an edge's lower (node 0) or upper record: lanes 16 V to 16 V + 16.
-#[cfg(target_feature = "avx2")]
+/// Bytes 32 V to 32 V + 32 of an edge's lower (node 0) or upper record: lanes 16 V to 16 V + 16.
 #[inline(always)]
 fn load_256<const V: usize>(edge: &[u8; 2 * RECORD], node: usize) -> __m256i {
     let bytes: &[[u8; 32]; 4] = edge.as_chunks().0.first_chunk().unwrap_or(&[[0; 32]; 4]);
@@ -83,14 +76,12 @@ fn edge_pairs<'a>(records: &'a [[u8; RECORD]], cell: &Cell) -> Option<EdgePairs<
 }
 
 /// Four sums at the lower node and the rise to the upper node, as `f32`.
-#[cfg(any(test, not(target_feature = "avx2")))]
 #[inline(always)]
 fn base_and_rise([low, high]: [__m128i; 2]) -> [__m128; 2] {
     unsafe { [_mm_cvtepi32_ps(low), _mm_cvtepi32_ps(_mm_sub_epi32(high, low))] }
 }
 
 /// [`portable`](crate::blend::portable) with vectors of 128 bits.
-#[cfg(any(test, not(target_feature = "avx2")))]
 #[inline(always)]
 pub(crate) fn blend_128(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales) -> Option<Lanes> {
     let edges = edge_pairs(records, cell)?;
@@ -99,19 +90,23 @@ pub(crate) fn blend_128(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScal
     let mut lanes = Lanes::ZERO;
     if let [a, b, c, d, e, f, g, h] = lanes.0.as_chunks_mut().0 {
         // The fences keep the compiler from interleaving the four, which would spill registers. They cost nothing.
-        [*a, *b] = eight::<0>(&edges, &weights, cell, scales);
+        [*a, *c] = eight::<0>(&edges, &weights, cell, scales);
         compiler_fence(Ordering::SeqCst);
-        [*c, *d] = eight::<1>(&edges, &weights, cell, scales);
+        [*b, *d] = eight::<1>(&edges, &weights, cell, scales);
         compiler_fence(Ordering::SeqCst);
-        [*e, *f] = eight::<2>(&edges, &weights, cell, scales);
+        [*e, *g] = eight::<2>(&edges, &weights, cell, scales);
         compiler_fence(Ordering::SeqCst);
-        [*g, *h] = eight::<3>(&edges, &weights, cell, scales);
+        [*f, *h] = eight::<3>(&edges, &weights, cell, scales);
     }
     Some(lanes)
 }
 
-/// Lanes 8 V to 8 V + 8.
-#[cfg(any(test, not(target_feature = "avx2")))]
+/// The block of lanes that stands as number `index` in the record; the same the other way round.
+const fn block_at(index: usize) -> usize {
+    place(index * BLOCK) / BLOCK
+}
+
+/// The two blocks at the record's bytes 16 V to 16 V + 16.
 #[inline(always)]
 fn eight<const V: usize>(
     edges: &EdgePairs<'_>,
@@ -129,14 +124,14 @@ fn eight<const V: usize>(
                 for (half, q) in [_mm_unpacklo_epi16(a, b), _mm_unpackhi_epi16(a, b)].into_iter().enumerate() {
                     let (sum, fine_sum) = (&mut sums[half][node], &mut fine_sums[half][node]);
                     *sum = _mm_add_epi32(*sum, _mm_madd_epi16(q, *coarse));
-                    if FINE[2 * V + half] {
+                    if FINE[block_at(2 * V + half)] {
                         *fine_sum = _mm_add_epi32(*fine_sum, _mm_madd_epi16(q, *fine));
                     }
                 }
             }
         }
         let value = |half: usize| {
-            let block = 2 * V + half;
+            let block = block_at(2 * V + half);
             let [mut base, mut rise] = base_and_rise(sums[half]);
             if FINE[block] {
                 let [base_fine, rise_fine] = base_and_rise(fine_sums[half]);
@@ -158,79 +153,94 @@ fn four([a, b, c, d]: [f32; 4]) -> __m128 {
 }
 
 /// [`portable`](crate::blend::portable) with vectors of 256 bits.
-#[cfg(target_feature = "avx2")]
 #[inline(always)]
-pub(crate) fn blend_256(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales) -> Option<Lanes> {
+pub(crate) fn blend_256(_: Avx2, records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales) -> Option<Lanes> {
     unsafe {
         let edges = edge_pairs(records, cell)?;
         let weights = Weights::new(cell);
-        let wide = |w: __m128i| pairs(w).map(|pair| _mm256_broadcastsi128_si256(pair));
-        let weights = (wide(weights.coarse), wide(weights.fine));
+        let (coarse, fine) = (wide_pairs(weights.coarse), wide_pairs(weights.fine));
         let mut lanes = Lanes::ZERO;
-        if let [low, high] = lanes.0.as_chunks_mut().0 {
-            *low = sixteen::<0>(&edges, &weights, cell, scales);
+        if let [a, b, c, d] = lanes.0.as_chunks_mut().0 {
+            let ([mut first, second], fine) = sixteen::<0>(&edges, &coarse, &fine);
+            let step = _mm256_set1_ps(FINE_STEP);
+            let clamped = _mm256_set1_ps(cell.fraction);
+            let unclamped = _mm256_blend_ps::<UNCLAMPED>(clamped, _mm256_set1_ps(cell.unclamped));
+            first.base = _mm256_add_ps(first.base, _mm256_mul_ps(fine.base, step));
+            first.rise = _mm256_add_ps(first.rise, _mm256_mul_ps(fine.rise, step));
+            first.store::<0>(unclamped, scales, a);
+            second.store::<1>(clamped, scales, b);
             compiler_fence(Ordering::SeqCst);
-            *high = sixteen::<1>(&edges, &weights, cell, scales);
+            let ([third, fourth], _) = sixteen::<1>(&edges, &coarse, &[_mm256_setzero_si256(); 4]);
+            third.store::<2>(clamped, scales, c);
+            fourth.store::<3>(clamped, scales, d);
         }
         Some(lanes)
     }
 }
 
-/// Lanes 16 V to 16 V + 16. Unpacking works within halves of the vector: what is `half` 0 here is blocks 0 and 2 of
-/// the four, `half` 1 blocks 1 and 3.
-#[cfg(target_feature = "avx2")]
+/// The lanes of the first eight whose vertical fraction is not clamped: the indentations.
+const UNCLAMPED: i32 = (1 << SLOTS) - 1;
+const _: () = assert!(FINE[0] && FINE[1] && !FINE[2] && !FINE[3]);
+
+/// [`pairs`] twice as wide.
 #[inline(always)]
-fn sixteen<const V: usize>(
-    edges: &EdgePairs<'_>,
-    (coarse, fine): &([__m256i; 4], [__m256i; 4]),
-    cell: &Cell,
-    scales: &LaneScales,
-) -> [f32; 4 * BLOCK] {
+fn wide_pairs(w: __m128i) -> [__m256i; 4] {
     unsafe {
-        let mut sums = [[_mm256_setzero_si256(); 2]; 2];
-        let mut fine_sums = sums;
-        let is_fine = |half: usize| [FINE[4 * V + half], FINE[4 * V + half + 2]];
-        for ((pair, coarse), fine) in edges.iter().zip(coarse).zip(fine) {
+        let [a, b, c, d] = pairs(w);
+        [
+            _mm256_broadcastsi128_si256(a),
+            _mm256_broadcastsi128_si256(b),
+            _mm256_broadcastsi128_si256(c),
+            _mm256_broadcastsi128_si256(d),
+        ]
+    }
+}
+
+/// Eight lanes at the lower node, and their rise to the upper one.
+struct Eight {
+    base: __m256,
+    rise: __m256,
+}
+
+impl Eight {
+    #[inline(always)]
+    fn new([low, high]: [__m256i; 2]) -> Self {
+        unsafe { Self { base: _mm256_cvtepi32_ps(low), rise: _mm256_cvtepi32_ps(_mm256_sub_epi32(high, low)) } }
+    }
+
+    /// Lanes 8 E to 8 E + 8 in their units: offset + step (base + t rise).
+    #[inline(always)]
+    fn store<const E: usize>(&self, t: __m256, scales: &LaneScales, out: &mut [f32; 2 * BLOCK]) {
+        let of = |numbers: &[f32; LANES]| numbers.as_chunks().0.get(E).copied().unwrap_or([0.0; 2 * BLOCK]);
+        let (offsets, steps) = (of(&scales.offsets), of(&scales.steps));
+        // The pointers are those of eight `f32` each, and neither loads nor store ask for alignment.
+        unsafe {
+            let (offsets, steps) = (_mm256_loadu_ps(offsets.as_ptr()), _mm256_loadu_ps(steps.as_ptr()));
+            let q = _mm256_add_ps(self.base, _mm256_mul_ps(t, self.rise));
+            _mm256_storeu_ps(out.as_mut_ptr(), _mm256_add_ps(offsets, _mm256_mul_ps(steps, q)));
+        }
+    }
+}
+
+/// Lanes 16 V to 16 V + 16, which unpacking gives in order (see [`place`](crate::channel::place)): eight of the lower
+/// halves, eight of the upper ones. The first eight by the fine weights too.
+#[inline(always)]
+fn sixteen<const V: usize>(edges: &EdgePairs<'_>, coarse: &[__m256i; 4], fine: &[__m256i; 4]) -> ([Eight; 2], Eight) {
+    unsafe {
+        // At the lower node and at the upper one.
+        let zero = [_mm256_setzero_si256(); 2];
+        let (mut first, mut second, mut first_fine) = (zero, zero, zero);
+        for (([a, b], coarse), fine) in edges.iter().zip(coarse).zip(fine) {
             for node in 0..2 {
-                let [a, b] = pair.map(|edge| load_256::<V>(edge, node));
-                for (half, q) in [_mm256_unpacklo_epi16(a, b), _mm256_unpackhi_epi16(a, b)].into_iter().enumerate() {
-                    let (sum, fine_sum) = (&mut sums[half][node], &mut fine_sums[half][node]);
-                    *sum = _mm256_add_epi32(*sum, _mm256_madd_epi16(q, *coarse));
-                    if is_fine(half) != [false; 2] {
-                        *fine_sum = _mm256_add_epi32(*fine_sum, _mm256_madd_epi16(q, *fine));
-                    }
+                let (a, b) = (load_256::<V>(a, node), load_256::<V>(b, node));
+                let (low, high) = (_mm256_unpacklo_epi16(a, b), _mm256_unpackhi_epi16(a, b));
+                first[node] = _mm256_add_epi32(first[node], _mm256_madd_epi16(low, *coarse));
+                second[node] = _mm256_add_epi32(second[node], _mm256_madd_epi16(high, *coarse));
+                if V == 0 {
+                    first_fine[node] = _mm256_add_epi32(first_fine[node], _mm256_madd_epi16(low, *fine));
                 }
             }
         }
-        let base_and_rise =
-            |[low, high]: [__m256i; 2]| [_mm256_cvtepi32_ps(low), _mm256_cvtepi32_ps(_mm256_sub_epi32(high, low))];
-        let blended = |half: usize| {
-            let [mut base, mut rise] = base_and_rise(sums[half]);
-            if is_fine(half) != [false; 2] {
-                // Zero, and so nothing added, in a block that has no fine weights.
-                let [low, high] = is_fine(half);
-                let step = [if low { FINE_STEP } else { 0.0 }, if high { FINE_STEP } else { 0.0 }];
-                let step = _mm256_set_m128(_mm_set1_ps(step[1]), _mm_set1_ps(step[0]));
-                let [base_fine, rise_fine] = base_and_rise(fine_sums[half]);
-                base = _mm256_add_ps(base, _mm256_mul_ps(base_fine, step));
-                rise = _mm256_add_ps(rise, _mm256_mul_ps(rise_fine, step));
-            }
-            let t = [four(fractions(cell, 4 * V + half)), four(fractions(cell, 4 * V + half + 2))];
-            _mm256_add_ps(base, _mm256_mul_ps(_mm256_set_m128(t[1], t[0]), rise))
-        };
-        let (even, odd) = (blended(0), blended(1));
-        let in_order = [_mm256_permute2f128_ps::<0x20>(even, odd), _mm256_permute2f128_ps::<0x31>(even, odd)];
-        let mut values = [0.0; 4 * BLOCK];
-        for (index, (q, out)) in in_order.into_iter().zip(values.as_chunks_mut().0).enumerate() {
-            let of = |numbers: &[f32; LANES]| {
-                let [a, b, c, d, e, f, g, h] = numbers.as_chunks().0.get(2 * V + index).copied().unwrap_or_default();
-                _mm256_set_ps(h, g, f, e, d, c, b, a)
-            };
-            let value = _mm256_add_ps(of(&scales.offsets), _mm256_mul_ps(of(&scales.steps), q));
-            let [a, b, c, d] = numbers(_mm256_castps256_ps128(value));
-            let [e, f, g, h] = numbers(_mm256_extractf128_ps::<1>(value));
-            *out = [a, b, c, d, e, f, g, h];
-        }
-        values
+        ([Eight::new(first), Eight::new(second)], Eight::new(first_fine))
     }
 }

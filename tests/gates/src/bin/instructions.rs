@@ -1,9 +1,10 @@
 //! Looks up poses of every kind, each by one call of [`counted`], so that callgrind can count each. Prints a line a
-//! case: its table, name, contacts, flags and a digest of the answer, the same for every build of the kernel.
+//! case: its table, name, contacts, flags and a digest of the answer, the same for every build of the kernel; to standard
+//! error which instructions the lookups are made of. With the argument `baseline` these are those of every processor.
 
 use std::hint::black_box;
 
-use flangeway::{AxisName, ContactTable, Contacts, Coordinates, Pose, Side};
+use flangeway::{AxisName, ContactTable, Contacts, Coordinates, InstructionSet, Pose, Side};
 
 /// A made-up table in which all three slots can carry force; `tests/kernel_gates.rs` writes it.
 static THREE: &[u8] = include_bytes!("../../three_contacts.fwt");
@@ -97,7 +98,15 @@ fn digest(contacts: &Contacts) -> u64 {
 
 fn main() {
     let images = [("s1002_60e1_40", flangeway_tables::S1002_60E1_40_TABLE), ("three", THREE)];
-    let tables = images.map(|(name, image)| (name, ContactTable::new(image).expect("a table")));
+    let baseline = std::env::args().any(|argument| argument == "baseline");
+    let tables = images.map(|(name, image)| {
+        let mut table = ContactTable::new(image).expect("a table");
+        if baseline {
+            table.set_instruction_set(InstructionSet::Baseline);
+        }
+        (name, table)
+    });
+    eprintln!("{}", tables[0].1.instruction_set());
     let mut cases = Vec::new();
     for (_, table) in &tables {
         // Twice: what happens before the loop belongs to the first.
