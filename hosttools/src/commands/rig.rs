@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use flangeway::ContactTable;
+use flangeway::{ContactTable, InstructionSet};
 
 use super::{print_json, read_table};
 use crate::error::{Error, Result};
@@ -41,6 +41,9 @@ pub struct RigArgs {
     /// Keep all memory in RAM (mlockall)
     #[arg(long)]
     pub lock_memory: bool,
+    /// Leave AVX2 unused: the instructions that every x86-64 processor has, for the same bits
+    #[arg(long)]
+    pub baseline: bool,
     /// Have a neighbour thread pollute the caches all the time
     #[arg(long)]
     pub pollute: bool,
@@ -70,7 +73,10 @@ pub fn run(args: &RigArgs) -> Result<()> {
     let aligned = read.map(Aligned::new);
     let image = aligned.as_ref().map_or(flangeway_tables::S1002_60E1_40_TABLE, Aligned::bytes);
     let name = args.table.as_ref().map_or_else(|| OWN_TABLE.into(), |path| path.display().to_string());
-    let table = ContactTable::new(image).map_err(|e| Error::file(&name, e.to_string()))?;
+    let mut table = ContactTable::new(image).map_err(|e| Error::file(&name, e.to_string()))?;
+    if args.baseline {
+        table.set_instruction_set(InstructionSet::Baseline);
+    }
     let (trajectory, poses) = match &args.trajectory {
         Some(path) => (path.display().to_string(), poses::read(path)?),
         None => ("hunting and a curve".into(), synthetic(&table, settings.rate)),
@@ -79,6 +85,7 @@ pub fn run(args: &RigArgs) -> Result<()> {
     let figures = Figures {
         table: &name,
         table_bytes: image.len(),
+        instructions: table.instruction_set(),
         trajectory: &trajectory,
         poses: poses.len(),
         settings: &settings,

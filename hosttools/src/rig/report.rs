@@ -1,6 +1,6 @@
 //! A run in figures: text and JSON.
 
-use flangeway::Slot;
+use flangeway::{InstructionSet, Slot};
 use hdrhistogram::Histogram;
 use serde_json::{Value, json as object};
 
@@ -38,6 +38,8 @@ pub struct Figures<'a> {
     pub table: &'a str,
     /// Size of the table (bytes).
     pub table_bytes: usize,
+    /// What the lookups were made of.
+    pub instructions: InstructionSet,
     /// Name of the trajectory.
     pub trajectory: &'a str,
     /// Poses of the trajectory.
@@ -69,9 +71,10 @@ pub fn lines(figures: &Figures<'_>) -> String {
     let Counts { in_time, late_starts, overruns, skipped } = log.counts;
     let mut lines = vec![
         format!(
-            "table {} ({} bytes), {} wheel{} at {} Hz for {} s, trajectory {}{}",
+            "table {} ({} bytes, {} instructions), {} wheel{} at {} Hz for {} s, trajectory {}{}",
             figures.table,
             figures.table_bytes,
+            figures.instructions,
             settings.wheels,
             if settings.wheels == 1 { "" } else { "s" },
             settings.rate,
@@ -107,6 +110,7 @@ pub fn json(figures: &Figures<'_>) -> Value {
     let mut document = object!({
         "table": figures.table,
         "table_bytes": figures.table_bytes,
+        "instructions": figures.instructions.to_string(),
         "trajectory": figures.trajectory,
         "trajectory_poses": figures.poses,
         "wheels": settings.wheels,
