@@ -79,8 +79,9 @@ fn saturates_at_the_bound_and_opposes_sliding() {
                 assert!(share <= 1.000_001 && share > 0.9999, "{name}, {ratio}: {share}");
                 let slip = [creepages.longitudinal.min(10.0), creepages.lateral];
                 let along = -(slip[0] * force.longitudinal + slip[1] * force.lateral) / slip[0].hypot(slip[1]) / bound;
-                // But for Polach's, the laws keep the linear force's direction, whose stiffnesses differ along and across.
-                let least = if name != "Polach" && slip[0] * slip[1] != 0.0 { 0.98 } else { 0.9998 };
+                // The cubic keeps the linear force's direction, whose stiffnesses differ along and across.
+                let cubic = name == "Shen-Hedrick-Elkins" && slip[0] * slip[1] != 0.0;
+                let least = if cubic { 0.98 } else { 0.9998 };
                 assert!(along > least, "{name}, {ratio}: {along}");
             }
         }
@@ -108,12 +109,12 @@ fn vermeulen_and_johnson_without_spin() {
         }
     }
     println!("FASTSIM against Vermeulen and Johnson: at most {worst:.3}");
-    assert!(worst < 0.10);
+    assert!(worst < 0.05);
 }
 
 #[test]
 fn polach_and_fastsim_are_one_without_spin() {
-    // Polach (1999) integrates the same linear growth under the half ellipsoid's linear slip area: close, not equal.
+    // Polach (1999) lets traction grow linearly under the half ellipsoid, FASTSIM as in strip theory: close, not equal.
     let patch = patch(1.0);
     let mut worst = 0.0_f32;
     for i in 1..=60_u8 {
@@ -122,7 +123,7 @@ fn polach_and_fastsim_are_one_without_spin() {
         worst = worst.max((a.magnitude() / b.magnitude() - 1.0).abs());
     }
     println!("Polach against FASTSIM: at most {worst:.3}");
-    assert!(worst < 0.12);
+    assert!(worst < 0.07);
 }
 
 /// Cases of spread creepages from slight to nearly sliding, with spin.
@@ -181,14 +182,6 @@ fn contacts_printed_results() {
         ([6.304e-3, 12.61e-3], 106_700.0, 0.33, [2e-3, 0.0, 0.0], [-0.8816, 0.0]),
         ([6.304e-3, 12.61e-3], 106_700.0, 0.33, [2.4e-3, 0.0, 0.0], [-0.9467, 0.0]),
     ];
-    // CONTACT's own FASTSIM, of first order and with coefficients 2 % from the table's, comes from -0.6098 on 40 x 40
-    // elements to -0.6338 on 200 x 200 in the first case (cases 2 and 6), and to -0.2577 in the third (case 62).
-    for ((semi_axes, normal_force, friction, creepages, _), own) in [(cases[0], -0.6338), (cases[2], -0.2577)] {
-        let force = fastsim::<100, 100>(&Patch { semi_axes, normal_force }, &STEEL, &of(creepages), friction);
-        let share = (force.longitudinal + force.lateral) / (friction * normal_force);
-        println!("FASTSIM 100 x 100: {share:.4}, CONTACT's {own}");
-        assert!((share / own - 1.0).abs() < 0.03);
-    }
     for (name, law) in LAWS {
         let mut worst = 0.0_f32;
         for (semi_axes, normal_force, friction, creepages, full) in cases {
@@ -199,7 +192,7 @@ fn contacts_printed_results() {
             worst = worst.max(off / full[0].hypot(full[1]));
         }
         println!("{name}: at most {worst:.3} of the force");
-        assert!(worst < if name.starts_with("FASTSIM") { 0.07 } else { 0.13 }, "{name}: {worst}");
+        assert!(worst < if name.starts_with("FASTSIM") { 0.03 } else { 0.13 }, "{name}: {worst}");
     }
 }
 

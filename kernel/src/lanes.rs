@@ -51,6 +51,12 @@ impl Four {
         with4(self, bound, |x, bound| if x > bound { x } else { bound })
     }
 
+    /// The lesser of each number and a bound; the bound for NaN.
+    #[inline(always)]
+    pub(crate) fn at_most(self, bound: Self) -> Self {
+        with4(self, bound, |x, bound| if x < bound { x } else { bound })
+    }
+
     /// Square roots of numbers that are not negative, correctly rounded.
     #[inline(always)]
     pub(crate) fn sqrt(self) -> Self {
@@ -389,6 +395,7 @@ mod tests {
                     (x * y, v * w),
                     (x / y, v / w),
                     (x.at_least(y), v.at_least(w)),
+                    (x.at_most(y), v.at_most(w)),
                     (x.at_least(zero.0).sqrt(), v.at_least(zero.1).sqrt()),
                     (Four::fourths([x, y, x]), simd::Four::fourths([v, w, v])),
                     (Four::transpose([x, y, x, y])[3], simd::Four::transpose([v, w, v, w])[3]),

@@ -56,6 +56,11 @@ impl Four {
     }
 
     #[inline(always)]
+    pub(crate) fn at_most(self, bound: Self) -> Self {
+        Self(unsafe { _mm_min_ps(self.0, bound.0) })
+    }
+
+    #[inline(always)]
     pub(crate) fn sqrt(self) -> Self {
         Self(unsafe { _mm_sqrt_ps(self.0) })
     }

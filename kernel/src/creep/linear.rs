@@ -14,7 +14,7 @@ use crate::math::{greater, lesser};
 /// ```
 ///
 /// C33 is not in the table of coefficients; it is taken from the simplified theory, whose tractions without slip give
-/// `C33 = 32/(15 π) (b/a)^1.5 C23` (see [`fastsim`](super::fastsim())).
+/// `C33 = 32/(15 π) (b/a)^1.5 C23`.
 #[must_use]
 pub fn kalker_linear(patch: &Patch, elasticity: &Elasticity, creepages: &Creepages) -> CreepForces {
     let case = Case::new(patch, elasticity, creepages, 1.0);

@@ -7,7 +7,7 @@
 //! | [`kalker_linear`] | Kalker's linear theory, no saturation | 230 |
 //! | [`shen_hedrick_elkins`] | the linear resultant bent by a cubic to the bound μN | 276 |
 //! | [`polach`] | closed form, spin included | 495 |
-//! | [`fastsim`] | Kalker's simplified theory on a grid of NX by NY elements | 1,668 on 10 by 10, 6,880 on 20 by 20 |
+//! | [`fastsim`] | Kalker's simplified theory on a grid of NX by NY elements, strip theory's tractions | 2,555 on 10 by 10, 6,936 on 20 by 20 |
 //!
 //! **Signs.** Creepages are the velocity of the wheel's material relative to the rail's, divided by the speed; forces
 //! act on the **wheel**, so they oppose the creepages. The axes of the contact plane are x forward, y along the contact's
