@@ -35,7 +35,7 @@ impl Zone {
 ///
 /// They are continuous in the pose: what is left over at the end of a zone is continued in the next, so zones that merge
 /// or part change nothing but the strip they meet in, which does not touch because there is no overlap there.
-pub fn cuts(zones: &[Zone], count: usize) -> Vec<Vec<f64>> {
+pub(super) fn cuts(zones: &[Zone], count: usize) -> Vec<Vec<f64>> {
     let part = |low: &[f64; 3], high: &[f64; 3]| 0.5 * (low[2].sqrt() + high[2].sqrt()) * (high[0] - low[0]).max(0.0);
     let pairs = |zone: &'_ Zone| zone.feet.windows(2).map(|pair| part(&pair[0], &pair[1])).sum::<f64>();
     let quantum = zones.iter().map(pairs).sum::<f64>() / count as f64;
