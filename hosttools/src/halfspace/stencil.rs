@@ -32,9 +32,11 @@ impl Stencil {
         for _ in 0..COUNT {
             let moved: [f64; COUNT] = std::array::from_fn(|n| (0..COUNT).map(|m| of(n, m) * direction[m]).sum());
             let length = squares / dot(&direction, &moved);
-            for n in 0..COUNT {
-                values[n] += length * direction[n];
-                left[n] -= length * moved[n];
+            for (value, t) in values.iter_mut().zip(&direction) {
+                *value += length * t;
+            }
+            for (left, m) in left.iter_mut().zip(&moved) {
+                *left -= length * m;
             }
             let earlier = std::mem::replace(&mut squares, dot(&left, &left));
             if squares < 1e-12 {
@@ -93,10 +95,10 @@ mod tests {
         gap[3 * columns + 4] = 1.0;
         let mut found = vec![0.0; gap.len()];
         stencil.apply(columns, &gap, &mut found);
-        for n in 0..found.len() {
+        for (n, found) in found.iter().enumerate() {
             let (i, j) = ((n % columns).abs_diff(4), (n / columns).abs_diff(3));
             let expected = if i > REACH || j > REACH { 0.0 } else { stencil.values[(REACH + j) * WIDTH + REACH + i] };
-            assert!((found[n] - expected).abs() < 1e-9 * stencil.values[COUNT / 2]);
+            assert!((found - expected).abs() < 1e-9 * stencil.values[COUNT / 2]);
         }
     }
 }

@@ -133,7 +133,7 @@ fn draw(place: &Area<'_>, wheel: &str, forces: bool, rows: &[&Row]) -> Drawn<()>
 
 /// The numbers behind one wheel's plots.
 fn list(place: &Area<'_>, wheel: &str, rows: &[&Row]) -> Drawn<()> {
-    let mut write = |row: usize, x: u32, text: &str, ink| {
+    let write = |row: usize, x: u32, text: &str, ink| {
         words(place, text, [px(x), px(ROW) * row as u32 + px(ROW) / 2], FONT, HPos::Right, ink)
     };
     write(0, 130, wheel, INK)?;
