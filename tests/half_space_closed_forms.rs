@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use flangeway_host::halfspace::{Convolution, solve};
+use flangeway_host::halfspace::{Convolution, Stencil, TOLERANCE, solve};
 use flangeway_host::hertz;
 
 /// A square grid of elements, `edges` (m), that reaches `reach` (m) to each side.
@@ -27,8 +27,8 @@ impl Grid {
     fn solve(&self) -> (f64, f64, f64, usize) {
         let mut pressure = vec![0.0; self.overlap.len()];
         let mut convolution = Convolution::new(self.columns, self.rows, self.edges);
-        let own = convolution.own_compliance();
-        let steps = solve(|p, u| convolution.apply(p, u), own, &self.overlap, &mut pressure);
+        let (stencil, apply) = (Stencil::new(self.edges), |p: &[f64], u: &mut [f64]| convolution.apply(p, u));
+        let steps = solve(apply, &stencil, self.columns, &self.overlap, &mut pressure, TOLERANCE);
         let element = self.edges[0] * self.edges[1];
         let area = pressure.iter().filter(|p| **p > 0.0).count() as f64 * element;
         (pressure.iter().sum::<f64>() * element, pressure.iter().copied().fold(0.0, f64::max), area, steps)

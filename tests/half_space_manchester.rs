@@ -95,8 +95,8 @@ fn forces_and_areas() {
         hits.iter().zip(&mut within).for_each(|(hit, count)| *count += usize::from(*hit));
     }
     println!(
-        "half-space within 3 %: {}, semi-Hertzian within 7 %: {}, area within 10 %: {}",
-        within[0], within[1], within[2]
+        "half-space within 3 %: {}, semi-Hertzian within 7 %: {}, 3 %: {}, area within 10 %: {}",
+        within[0], within[1], within[3], within[2]
     );
     assert!(within[0] >= 20 && within[1] >= 18 && within[2] >= 18);
 }

@@ -32,7 +32,7 @@ fn poses(pair: &Pair, count: usize, seed: u64) -> Vec<Pose> {
     (0..count).filter_map(draw).collect()
 }
 
-/// Measured: semi-Hertzian median 0.29 %, 95 % 2.9 %, largest 13 %; Hertz 0.49 %, 14 %, 33 %.
+/// Measured: semi-Hertzian median 0.19 %, 95 % 2.9 %, largest 4.9 %; Hertz 0.48 %, 14 %, 33 %.
 #[test]
 fn strips_and_half_space_agree() {
     let hertz = Pair::build(&common::manchester_built_in()).unwrap();
@@ -56,9 +56,15 @@ fn strips_and_half_space_agree() {
 #[test]
 fn forces_do_not_jump() {
     let hertz = Pair::build(&common::manchester_built_in()).unwrap();
-    let half = model(&hertz, Normal::HalfSpace);
+    let [semi, half] = [Normal::SemiHertzian, Normal::HalfSpace].map(|normal| model(&hertz, normal));
+    let [semi, half] = [(&semi, 96), (&half, 24)].map(|(pair, lines)| largest_change(pair, &poses(&hertz, lines, 3)));
+    println!("largest change over 10 nm or nrad: semi-Hertzian {:.3} %, half-space {:.3} %", 1e2 * semi, 1e2 * half);
+    assert!(semi < 1e-2 && half < 1e-3);
+}
+
+fn largest_change(pair: &Pair, poses: &[Pose]) -> f64 {
     let mut worst = 0.0_f64;
-    for (number, pose) in poses(&hertz, 24, 3).into_iter().enumerate() {
+    for (number, pose) in poses.iter().copied().into_iter().enumerate() {
         let at = |s: f64| match number % 3 {
             0 => Pose { lateral: pose.lateral + s, ..pose },
             1 => Pose { yaw: pose.yaw + s, ..pose },
@@ -66,10 +72,10 @@ fn forces_do_not_jump() {
         };
         // Bisection towards the largest change.
         let (mut low, mut high) = (0.0, 0.2e-3);
-        let [mut f_low, mut f_high] = [low, high].map(|s| force(&half, &at(s)));
+        let [mut f_low, mut f_high] = [low, high].map(|s| force(pair, &at(s)));
         while high - low > 1e-8 {
             let middle = 0.5 * (low + high);
-            let f = force(&half, &at(middle));
+            let f = force(pair, &at(middle));
             if (f - f_low).abs() > (f_high - f).abs() {
                 (high, f_high) = (middle, f)
             } else {
@@ -80,6 +86,5 @@ fn forces_do_not_jump() {
             worst = worst.max((f_high / f_low - 1.0).abs());
         }
     }
-    println!("largest change over 10 nm or nrad: {:.3} %", 1e2 * worst);
-    assert!(worst < 1e-3);
+    worst
 }

@@ -348,6 +348,11 @@ impl Surface<'_> {
         &self.zones
     }
 
+    /// Rail parameters (m) that cut each zone into strips, about `count` in all.
+    pub fn cuts(&self, count: usize) -> Vec<Vec<f64>> {
+        rows::cuts(&self.zones, count)
+    }
+
     /// The row at a rail parameter (m) in a zone.
     pub fn row(&self, zone: &Zone, s: f64) -> Option<Row> {
         rows::row(self.body, self.ridge, self.centre, zone, s)

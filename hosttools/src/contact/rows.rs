@@ -28,27 +28,32 @@ impl Zone {
         let [[s0, t0, _], [s1, t1, _]] = [self.feet[above - 1], self.feet[above]];
         if s1 > s0 { t0 + (t1 - t0) * (s - s0) / (s1 - s0) } else { t0 }
     }
+}
 
-    /// Rail parameters (m) that cut the zone into `count` strips, denser where the overlap is deep: each has the same
-    /// part of ∫ w² + (w_max / 10)² ds. They are continuous in the pose.
-    pub fn cuts(&self, count: usize) -> Vec<f64> {
-        let deepest = self.feet.iter().map(|foot| foot[2]).fold(0.0, f64::max);
-        let density = |foot: &[f64; 3]| foot[2] * foot[2] + 0.01 * deepest * deepest;
-        let mut sums = vec![0.0];
-        for pair in self.feet.windows(2) {
-            let part = 0.5 * (density(&pair[0]) + density(&pair[1])) * (pair[1][0] - pair[0][0]).max(0.0);
-            sums.push(sums[sums.len() - 1] + part);
+/// Rail parameters (m) that cut each zone into strips, `count` of them over all zones and a few more: denser where the
+/// overlap is deep, each with the same part of ∫ √w ds.
+///
+/// They are continuous in the pose: what is left over at the end of a zone is continued in the next, so zones that merge
+/// or part change nothing but the strip they meet in, which does not touch because there is no overlap there.
+pub(super) fn cuts(zones: &[Zone], count: usize) -> Vec<Vec<f64>> {
+    let part = |low: &[f64; 3], high: &[f64; 3]| 0.5 * (low[2].sqrt() + high[2].sqrt()) * (high[0] - low[0]).max(0.0);
+    let pairs = |zone: &'_ Zone| zone.feet.windows(2).map(|pair| part(&pair[0], &pair[1])).sum::<f64>();
+    let quantum = zones.iter().map(pairs).sum::<f64>() / count as f64;
+    let mut filled = 0.0;
+    let cut = |zone: &Zone| {
+        let mut cuts = vec![zone.ends[0]];
+        for pair in zone.feet.windows(2) {
+            let part = part(&pair[0], &pair[1]);
+            filled += part;
+            while filled >= quantum && part > 0.0 {
+                filled -= quantum;
+                cuts.push(pair[1][0] - (pair[1][0] - pair[0][0]) * (filled / part));
+            }
         }
-        let total = sums[sums.len() - 1];
-        let cut = |k: usize| {
-            let target = total * k as f64 / count as f64;
-            let above = sums.partition_point(|sum| *sum < target).clamp(1, sums.len() - 1);
-            let (low, high) = (sums[above - 1], sums[above]);
-            let share = if high > low { (target - low) / (high - low) } else { 0.0 };
-            self.feet[above - 1][0] + share * (self.feet[above][0] - self.feet[above - 1][0])
-        };
-        (0..=count).map(cut).collect()
-    }
+        cuts.push(zone.ends[1]);
+        cuts
+    };
+    zones.iter().map(cut).collect()
 }
 
 /// One row: the highest point of the wheel over it.

@@ -6,9 +6,17 @@ use crate::halfspace::RowLoad;
 
 /// Gives each slot the force of the rows on its region of the wheel.
 ///
-/// C is N / δ^1.5 of the slot's own indentation; position, angle and curvatures are means under the pressure; the
-/// semi-axes are those of the ellipse whose pressure by Hertz has the patch's second moments, a² / 5 and b² / 5. A row
+/// C is N / δ^1.5 of the slot's own indentation; position, angle and curvatures are means under the pressure. A row
 /// on a boundary belongs to both sides by its width. What falls to a slot that has no indentation goes to the deepest.
+///
+/// The semi-axes are those of an ellipse as long and as wide under pressure, n(s) the force per width of a row:
+///
+/// ```text
+/// a² = 5 ∫ n <(x - x̄)²> ds / N,   x̄ and <> each row's own;   b = 3/5 N² / ∫ n² ds
+/// ```
+/// Both are exact for Hertz's ellipse, also one askew, whose area is π a b with a its half chord along x. Patches side by
+/// side count by their widths, not by how far apart they are: with second moments about the common mean, that distance
+/// ruled b, and between the nodes of a table it is anything but linear.
 pub(super) fn assign(body: &Body, slots: &mut [SlotState; SLOTS], loads: &[RowLoad]) {
     let deepest = (0..SLOTS).max_by(|&i, &j| slots[i].indentation.total_cmp(&slots[j].indentation)).unwrap_or(0);
     let mut sums = [Sums::default(); SLOTS];
@@ -34,8 +42,10 @@ pub(super) fn assign(body: &Body, slots: &mut [SlotState; SLOTS], loads: &[RowLo
 #[derive(Debug, Clone, Copy, Default)]
 struct Sums {
     force: f64,
-    x: [f64; 2],
-    across: [f64; 2],
+    /// Σ N <(x - mean of the row)²>
+    along: f64,
+    /// Σ N² / h
+    squares: f64,
     longitudinal: f64,
     profile: f64,
     radius: f64,
@@ -47,12 +57,9 @@ impl Sums {
     fn add(&mut self, load: &RowLoad, force: f64) {
         let row = &load.row;
         let [mean, square] = load.moments;
-        let s = row.rail.t;
         self.force += force;
-        self.x[0] += force * (row.x + mean);
-        self.x[1] += force * (row.x * row.x + 2.0 * row.x * mean + square);
-        self.across[0] += force * s;
-        self.across[1] += force * (s * s + load.width * load.width / 12.0);
+        self.along += force * (square - mean * mean);
+        self.squares += force * load.force / load.width;
         self.longitudinal += force * (row.longitudinal + mean);
         self.profile += force * row.wheel.s;
         self.radius += force * row.wheel.radius;
@@ -67,14 +74,10 @@ impl Sums {
             slot.stiffness = 0.0;
             return;
         }
-        let semi_axis = |[first, second]: [f64; 2]| {
-            let mean = first / self.force;
-            (5.0 * (second / self.force - mean * mean).max(0.0) / delta).sqrt()
-        };
         *slot = SlotState {
             stiffness: self.force / (delta * delta.sqrt()),
-            semi_axis_x: semi_axis(self.x),
-            semi_axis_y: semi_axis(self.across),
+            semi_axis_x: (5.0 * self.along / self.force / delta).sqrt(),
+            semi_axis_y: 0.6 * self.force * self.force / self.squares / delta.sqrt(),
             longitudinal: self.longitudinal / self.force,
             profile: self.profile / self.force,
             radius_offset: self.radius / self.force - body.wheel.geometry().nominal_radius,

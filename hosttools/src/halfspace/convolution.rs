@@ -38,7 +38,6 @@ pub struct Convolution {
     padded_rows: usize,
     /// Transform of the influence, real because the influence is even; column after column.
     spectrum: Vec<f64>,
-    own: f64,
     rows_forward: Arc<dyn RealToComplex<f64>>,
     rows_back: Arc<dyn ComplexToReal<f64>>,
     columns_forward: Arc<dyn Fft<f64>>,
@@ -70,7 +69,6 @@ impl Convolution {
             padded_columns,
             padded_rows,
             spectrum: Vec::new(),
-            own: 0.0,
             rows_forward,
             rows_back,
             columns_forward,
@@ -85,7 +83,6 @@ impl Convolution {
     }
 
     fn transform_influence(&mut self, influence: &[f64]) {
-        self.own = influence[0];
         let (width, height) = (self.half.len(), self.padded_rows);
         for j in 0..self.rows {
             let row = &influence[j * self.columns..][..self.columns];
@@ -113,11 +110,6 @@ impl Convolution {
         for (k, value) in self.half.iter().enumerate() {
             self.work[k * self.padded_rows + j] = *value;
         }
-    }
-
-    /// Displacement times E* (m) of an element under unit pressure on itself.
-    pub fn own_compliance(&self) -> f64 {
-        self.own
     }
 
     /// Displacements times E* (m Pa) from pressures (Pa), row by row.

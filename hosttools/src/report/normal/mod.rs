@@ -1,6 +1,7 @@
 //! What the three models of normal contact make of the same pair.
 
 mod curves;
+mod manchester;
 mod patches;
 
 use flangeway::{Coordinates, Pose, Side};
@@ -41,6 +42,7 @@ fn pose(pair: &Pair, at: &Coordinates, load: f64) -> Option<Pose> {
 /// The figures.
 pub(super) fn figures(pair: &Pair) -> Result<Vec<Figure>> {
     let models = models(pair);
+    let (against_contact, words) = manchester::manchester()?;
     Ok(vec![
         Figure {
             title: "Pressure in the patch",
@@ -67,5 +69,6 @@ pub(super) fn figures(pair: &Pair) -> Result<Vec<Figure>> {
                 1e6 * curves::DEPTH
             ),
         },
+        Figure { title: "Three models against CONTACT", svg: against_contact, caption: words },
     ])
 }
