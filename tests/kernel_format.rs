@@ -63,11 +63,8 @@ fn every_byte_of_a_tiny_image() {
         bytes.extend(value.to_le_bytes());
     }
     bytes.resize(768, 0);
-    for record in &tiny.sides[0].records {
-        // Blocks of four lanes.
-        for block in [0, 2, 1, 3, 4, 6, 5, 7] {
-            record[4 * block..][..4].iter().for_each(|lane| bytes.extend(lane.to_le_bytes()));
-        }
+    for lane in tiny.sides[0].records.as_flattened() {
+        bytes.extend(lane.to_le_bytes());
     }
     assert!(bytes == image, "first difference at byte {:?}", bytes.iter().zip(&image).position(|(a, b)| a != b));
     assert_eq!(tiny.image(), image, "the same parts give the same bytes");
@@ -166,7 +163,7 @@ fn says_what_is_wrong() {
 fn writer_refuses_what_does_not_fit() {
     let mut table = Synthetic::new(smallest_axes(), 1);
     let record = table.sides[0].records.pop().unwrap();
-    assert_eq!(write_image(&table.parts()).unwrap_err().to_string(), "records: 15 values, the axes need 16");
+    assert_eq!(write_image(&table.parts()).unwrap_err().to_string(), "records: 480 values, the axes need 512");
     table.sides[0].records.push(record);
     table.sides[0].rigid.push([0.0; 4]);
     assert_eq!(write_image(&table.parts()).unwrap_err().to_string(), "rigid contacts: 20 values, the axes need 16");

@@ -5,11 +5,11 @@ use std::ops::Range;
 use std::path::Path;
 
 use flangeway::layout::{
-    CHECKSUM_AT, HEADER_AT, HEADER_LENGTH_AT, LENGTH_AT, MAGIC, MAGIC_AT, RECORD, RIGID, Sections, SideSections,
-    VERSION, VERSION_AT, checksum, refined,
+    CHECKSUM_AT, HEADER_AT, HEADER_LENGTH_AT, LENGTH_AT, MAGIC, MAGIC_AT, RIGID, Sections, SideSections, VERSION,
+    VERSION_AT, checksum, refined,
 };
 use flangeway::{
-    Axis, AxisCounts, AxisName, ContactTable, Header, LANES, MAX_BINS, NodeBytes, RigidMap, Scale, bin_start, place,
+    Axis, AxisCounts, AxisName, ContactTable, Header, LANES, MAX_BINS, NodeBytes, RigidMap, Scale, bin_start,
 };
 
 use crate::error::{Error, Result};
@@ -220,17 +220,7 @@ pub fn write_image(parts: &ImageParts<'_>) -> Result<Vec<u8>> {
 
 fn write_side(image: &mut [u8], sections: &SideSections, data: &SideParts<'_>) -> Result<()> {
     fill(image, &sections.rigid, "rigid contacts", data.rigid.as_flattened().iter().map(|x| x.to_le_bytes()))?;
-    fill(image, &sections.records, "records", data.records.iter().map(record_bytes))
-}
-
-/// A record as the image holds it.
-fn record_bytes(lanes: &[i16; LANES]) -> [u8; RECORD] {
-    let mut bytes = [0; RECORD];
-    for (lane, q) in lanes.iter().enumerate() {
-        let start = size_of::<i16>() * place(lane);
-        bytes[start..start + size_of::<i16>()].copy_from_slice(&q.to_le_bytes());
-    }
-    bytes
+    fill(image, &sections.records, "records", data.records.as_flattened().iter().map(|q| q.to_le_bytes()))
 }
 
 /// Fills a section with values that must be exactly as many as fit.

@@ -12,7 +12,7 @@
 use core::sync::atomic::{Ordering, compiler_fence};
 
 use crate::blend::{Cell, Edges, FINE, FINE_STEP, LaneScales, Lanes, edges, float, fractions, weights};
-use crate::channel::{BLOCK, LANES, place};
+use crate::channel::{BLOCK, LANES};
 use crate::layout::RECORD;
 
 /// Lanes in a word.
@@ -20,10 +20,8 @@ const HALVES: usize = 2;
 /// Blocks in a turn of the loop. A block is summed at once: its eight sums, a word, an edge and its weight fit the core's
 /// registers.
 const TURN: usize = 2;
-/// Bytes of a block, and from a turn's first block to the end of its second: there is another turn's between them, see
-/// [`place`].
-const BLOCK_BYTES: usize = 2 * BLOCK;
-const TURN_BYTES: usize = 3 * BLOCK_BYTES;
+/// Bytes of a turn's lanes.
+const TURN_BYTES: usize = 2 * BLOCK * TURN;
 /// Words from an edge's lower record to its upper one.
 const RECORD_WORDS: usize = RECORD / 4;
 
@@ -31,16 +29,9 @@ const _: () = {
     let mut block = 0;
     while block < FINE.len() {
         assert!(FINE[block] == (block < TURN));
-        let (turn, second) = (block / TURN, block % TURN);
-        assert!(2 * place(block * BLOCK) == begin(turn) + 2 * BLOCK_BYTES * second);
         block += 1;
     }
 };
-
-/// Where a turn's lanes begin in the record, bytes.
-const fn begin(turn: usize) -> usize {
-    BLOCK_BYTES * (turn % 2 + 4 * (turn / 2))
-}
 
 /// [`portable`](crate::blend::portable) by words.
 #[inline(always)]
@@ -97,11 +88,11 @@ fn sums<const B: usize>(edges: &Edges<'_>, weights: &[i32; 8], turn: usize) -> [
     let mut sums = [[0; BLOCK]; 2];
     for (nodes, weight) in edges.iter().zip(weights) {
         // From the turn's lanes at the lower node to those at the upper one, at fixed distances from one place.
-        let span = nodes.get(begin(turn)..).and_then(<[_]>::first_chunk);
+        let span = nodes.get(TURN_BYTES * turn..).and_then(<[_]>::first_chunk);
         let span: &[u8; RECORD + TURN_BYTES] = span.unwrap_or(&[0; RECORD + TURN_BYTES]);
         for (node, sums) in sums.iter_mut().enumerate() {
             for (word, sums) in sums.as_chunks_mut::<HALVES>().0.iter_mut().enumerate() {
-                let [low, high] = halves(span, node * RECORD_WORDS + 2 * B * BLOCK / HALVES + word);
+                let [low, high] = halves(span, node * RECORD_WORDS + B * BLOCK / HALVES + word);
                 let [first, second] = sums;
                 *first += low * weight;
                 *second += high * weight;

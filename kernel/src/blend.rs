@@ -15,7 +15,7 @@
 //! whole range of `i16`, and in proportion less if they differ less.
 
 use crate::axis::Places;
-use crate::channel::{BLOCK, Channel, LANES, SLOTS, Scales, Slot, place};
+use crate::channel::{BLOCK, Channel, LANES, SLOTS, Scales, Slot};
 use crate::corners::eight;
 use crate::layout::RECORD;
 use crate::math::{Quad, Two, single};
@@ -218,7 +218,7 @@ fn sums(edges: &Edges<'_>, weights: &[EdgeWeights; 8], lane: usize, of: impl Fn(
     edges.iter().zip(weights).fold((0, 0), |(lower, upper), (pair, weights)| {
         let q = |at| i32::from(i16::from_le_bytes(pair.as_chunks().0.get(at).copied().unwrap_or_default()));
         let weight = i32::from(of(weights));
-        (lower + weight * q(place(lane)), upper + weight * q(LANES + place(lane)))
+        (lower + weight * q(lane), upper + weight * q(LANES + lane))
     })
 }
 
@@ -277,7 +277,7 @@ mod tests {
 
     /// The corners' product weights and the vertical lines, in `f64`.
     fn exact(records: &[[u8; RECORD]], [u, p, r, t]: [f64; 4], lane: usize) -> f64 {
-        let q = |index: usize| f64::from(i16::from_le_bytes(records[index].as_chunks().0[place(lane)]));
+        let q = |index: usize| f64::from(i16::from_le_bytes(records[index].as_chunks().0[lane]));
         let weight = |k: usize| {
             let side = |t: f64, bit: usize| if k >> bit & 1 == 1 { t } else { 1.0 - t };
             side(u, 2) * side(p, 1) * side(r, 0)

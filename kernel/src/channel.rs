@@ -16,17 +16,6 @@ pub const CONFORMAL_LANE: usize = 27;
 /// The lane that is reserved and zero.
 pub const RESERVED_LANE: usize = 31;
 
-/// Where a lane stands in the record: of each four blocks of four lanes the middle two change places. Vector instructions
-/// that unpack sixteen integers at a time then give the lanes in order. It is its own inverse.
-#[must_use]
-pub const fn place(lane: usize) -> usize {
-    match lane / BLOCK % 4 {
-        1 => lane + BLOCK,
-        2 => lane - BLOCK,
-        _ => lane,
-    }
-}
-
 /// Region of the wheel profile that a contact lies in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Slot {

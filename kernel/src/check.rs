@@ -4,7 +4,7 @@
 use core::ops::Range;
 
 use crate::axis::{Axis, AxisName};
-use crate::channel::{CONFORMAL_LANE, Channel, LANES, RESERVED_LANE, Slot, place};
+use crate::channel::{CONFORMAL_LANE, Channel, LANES, RESERVED_LANE, Slot};
 use crate::error::TableError;
 use crate::header::{Header, MAX_PARTS, SideHeader};
 use crate::layout::{
@@ -169,11 +169,11 @@ pub(crate) fn records<'a>(image: &'a [u8], section: &Range<usize>) -> Result<&'a
     Ok(records)
 }
 
-/// The integers of a record by lane.
+/// The integers of a record.
 pub(crate) fn lanes(record: &[u8; RECORD]) -> [i16; LANES] {
     let mut lanes = [0; LANES];
-    for (lane, value) in lanes.iter_mut().enumerate() {
-        *value = i16::from_le_bytes(record.as_chunks().0.get(place(lane)).copied().unwrap_or_default());
+    for (lane, bytes) in lanes.iter_mut().zip(record.as_chunks().0) {
+        *lane = i16::from_le_bytes(*bytes);
     }
     lanes
 }

@@ -6,7 +6,7 @@ use core::sync::atomic::{Ordering, compiler_fence};
 
 use super::{Avx2, Quad, numbers};
 use crate::blend::{Cell, FINE, FINE_BITS, FINE_MASK, FINE_STEP, LaneScales, Lanes, edges, fractions};
-use crate::channel::{BLOCK, LANES, SLOTS, place};
+use crate::channel::{BLOCK, LANES, SLOTS};
 use crate::layout::RECORD;
 
 /// Weights of the edges: pairs of `i16` for two neighbouring edges.
@@ -37,7 +37,7 @@ fn differences(sums: __m128i) -> __m128i {
     unsafe { _mm_sub_epi16(sums, _mm_slli_si128::<2>(sums)) }
 }
 
-/// Bytes 16 V to 16 V + 16 of an edge's lower (node 0) or upper record.
+/// Lanes 8 V to 8 V + 8 of an edge's lower (node 0) or upper record.
 #[inline(always)]
 fn load_128<const V: usize>(edge: &[u8; 2 * RECORD], node: usize) -> __m128i {
     let bytes: &[[u8; 16]; 8] = edge.as_chunks().0.first_chunk().unwrap_or(&[[0; 16]; 8]);
@@ -45,7 +45,7 @@ fn load_128<const V: usize>(edge: &[u8; 2 * RECORD], node: usize) -> __m128i {
     unsafe { _mm_loadu_si128(bytes[4 * node + V].as_ptr().cast()) }
 }
 
-/// Bytes 32 V to 32 V + 32 of an edge's lower (node 0) or upper record: lanes 16 V to 16 V + 16.
+/// Lanes 16 V to 16 V + 16 of an edge's lower (node 0) or upper record.
 #[inline(always)]
 fn load_256<const V: usize>(edge: &[u8; 2 * RECORD], node: usize) -> __m256i {
     let bytes: &[[u8; 32]; 4] = edge.as_chunks().0.first_chunk().unwrap_or(&[[0; 32]; 4]);
@@ -90,23 +90,18 @@ pub(crate) fn blend_128(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScal
     let mut lanes = Lanes::ZERO;
     if let [a, b, c, d, e, f, g, h] = lanes.0.as_chunks_mut().0 {
         // The fences keep the compiler from interleaving the four, which would spill registers. They cost nothing.
-        [*a, *c] = eight::<0>(&edges, &weights, cell, scales);
+        [*a, *b] = eight::<0>(&edges, &weights, cell, scales);
         compiler_fence(Ordering::SeqCst);
-        [*b, *d] = eight::<1>(&edges, &weights, cell, scales);
+        [*c, *d] = eight::<1>(&edges, &weights, cell, scales);
         compiler_fence(Ordering::SeqCst);
-        [*e, *g] = eight::<2>(&edges, &weights, cell, scales);
+        [*e, *f] = eight::<2>(&edges, &weights, cell, scales);
         compiler_fence(Ordering::SeqCst);
-        [*f, *h] = eight::<3>(&edges, &weights, cell, scales);
+        [*g, *h] = eight::<3>(&edges, &weights, cell, scales);
     }
     Some(lanes)
 }
 
-/// The block of lanes that stands as number `index` in the record; the same the other way round.
-const fn block_at(index: usize) -> usize {
-    place(index * BLOCK) / BLOCK
-}
-
-/// The two blocks at the record's bytes 16 V to 16 V + 16.
+/// Lanes 8 V to 8 V + 8.
 #[inline(always)]
 fn eight<const V: usize>(
     edges: &EdgePairs<'_>,
@@ -124,14 +119,14 @@ fn eight<const V: usize>(
                 for (half, q) in [_mm_unpacklo_epi16(a, b), _mm_unpackhi_epi16(a, b)].into_iter().enumerate() {
                     let (sum, fine_sum) = (&mut sums[half][node], &mut fine_sums[half][node]);
                     *sum = _mm_add_epi32(*sum, _mm_madd_epi16(q, *coarse));
-                    if FINE[block_at(2 * V + half)] {
+                    if FINE[2 * V + half] {
                         *fine_sum = _mm_add_epi32(*fine_sum, _mm_madd_epi16(q, *fine));
                     }
                 }
             }
         }
         let value = |half: usize| {
-            let block = block_at(2 * V + half);
+            let block = 2 * V + half;
             let [mut base, mut rise] = base_and_rise(sums[half]);
             if FINE[block] {
                 let [base_fine, rise_fine] = base_and_rise(fine_sums[half]);
@@ -208,6 +203,23 @@ impl Eight {
         unsafe { Self { base: _mm256_cvtepi32_ps(low), rise: _mm256_cvtepi32_ps(_mm256_sub_epi32(high, low)) } }
     }
 
+    /// Blocks 0 and 2, 1 and 3, as 0 and 1, 2 and 3.
+    #[inline(always)]
+    fn in_order([a, b]: [Self; 2]) -> [Self; 2] {
+        unsafe {
+            [
+                Self {
+                    base: _mm256_permute2f128_ps::<0x20>(a.base, b.base),
+                    rise: _mm256_permute2f128_ps::<0x20>(a.rise, b.rise),
+                },
+                Self {
+                    base: _mm256_permute2f128_ps::<0x31>(a.base, b.base),
+                    rise: _mm256_permute2f128_ps::<0x31>(a.rise, b.rise),
+                },
+            ]
+        }
+    }
+
     /// Lanes 8 E to 8 E + 8 in their units: offset + step (base + t rise).
     #[inline(always)]
     fn store<const E: usize>(&self, t: __m256, scales: &LaneScales, out: &mut [f32; 2 * BLOCK]) {
@@ -222,25 +234,26 @@ impl Eight {
     }
 }
 
-/// Lanes 16 V to 16 V + 16, which unpacking gives in order (see [`place`](crate::channel::place)): eight of the lower
-/// halves, eight of the upper ones. The first eight by the fine weights too.
+/// Lanes 16 V to 16 V + 16. Unpacking works within halves of the vector: of four blocks it gives the first and the third,
+/// then the second and the fourth. The first eight, where V is 0, by the fine weights too.
 #[inline(always)]
 fn sixteen<const V: usize>(edges: &EdgePairs<'_>, coarse: &[__m256i; 4], fine: &[__m256i; 4]) -> ([Eight; 2], Eight) {
     unsafe {
         // At the lower node and at the upper one.
         let zero = [_mm256_setzero_si256(); 2];
-        let (mut first, mut second, mut first_fine) = (zero, zero, zero);
+        let (mut odd, mut even, mut first_fine) = (zero, zero, zero);
         for (([a, b], coarse), fine) in edges.iter().zip(coarse).zip(fine) {
             for node in 0..2 {
                 let (a, b) = (load_256::<V>(a, node), load_256::<V>(b, node));
                 let (low, high) = (_mm256_unpacklo_epi16(a, b), _mm256_unpackhi_epi16(a, b));
-                first[node] = _mm256_add_epi32(first[node], _mm256_madd_epi16(low, *coarse));
-                second[node] = _mm256_add_epi32(second[node], _mm256_madd_epi16(high, *coarse));
+                odd[node] = _mm256_add_epi32(odd[node], _mm256_madd_epi16(low, *coarse));
+                even[node] = _mm256_add_epi32(even[node], _mm256_madd_epi16(high, *coarse));
                 if V == 0 {
-                    first_fine[node] = _mm256_add_epi32(first_fine[node], _mm256_madd_epi16(low, *fine));
+                    let first = _mm256_inserti128_si256::<1>(low, _mm256_castsi256_si128(high));
+                    first_fine[node] = _mm256_add_epi32(first_fine[node], _mm256_madd_epi16(first, *fine));
                 }
             }
         }
-        ([Eight::new(first), Eight::new(second)], Eight::new(first_fine))
+        (Eight::in_order([Eight::new(odd), Eight::new(even)]), Eight::new(first_fine))
     }
 }
