@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::manifest::Entry;
 use super::store::Folder;
+use crate::contact::Normal;
 use crate::error::{Error, Result};
 use crate::image::write_atomically;
 use crate::recipe::{self, NodeValues, Nodes, Recipe};
@@ -53,7 +54,7 @@ const TEMPLATE: &str = include_str!("slurm_job.sh");
 /// Longest array where the cluster does not tell: Slurm's own default.
 const MAX_ARRAY_SIZE: usize = 1001;
 
-/// Expected seconds of one core for a table, by its bytes; roughly those of Hertzian tables of 43 KB to 1 MiB
+/// Expected seconds of one core for a table, by its bytes and its solver; roughly those of tables of 43 KB to 1 MiB
 /// (CAMPAIGNS.md). Only the proportions matter to the balance of tasks.
 pub(super) fn cost(recipe: &Recipe) -> f64 {
     let grid = &recipe.grid;
@@ -72,8 +73,20 @@ pub(super) fn cost(recipe: &Recipe) -> f64 {
         NodeValues::Fitted => 16e-6,
         NodeValues::Sampled => 1e-6,
     };
-    3.0 + search + values * bytes
+    let hertz = 3.0 + search + values * bytes;
+    match recipe.solver.normal {
+        Normal::Hertz => hertz,
+        Normal::SemiHertzian => STRIPS * hertz,
+        // Prepared with strips, then every node is solved.
+        Normal::HalfSpace => PREPARED * hertz + HALF_SPACE * bytes,
+    }
 }
+
+/// What semi-Hertzian tables, and the preparation of half-space ones, cost over Hertzian ones, as measured.
+const STRIPS: f64 = 6.0;
+const PREPARED: f64 = 4.3;
+/// Seconds a byte for the half-space at the nodes.
+const HALF_SPACE: f64 = 1e-4;
 
 /// Parts of equal cost: the costliest table first, each to the part that has the least so far.
 pub fn balance(costs: &[f64], parts: usize) -> Vec<Vec<usize>> {
@@ -218,6 +231,16 @@ mod tests {
         all.sort_unstable();
         assert!(all.into_iter().eq(0..200));
         assert_eq!(balance(&[1.0; 3], 10).len(), 3);
+    }
+
+    #[test]
+    fn the_dearer_solver_is_expected_to_cost_more() {
+        let recipe = |normal: &str| {
+            let text = format!("{}\n[solver]\nnormal = \"{normal}\"\n", flangeway_tables::S1002_60E1_40);
+            Recipe::parse(&text, Path::new("recipe.toml")).unwrap()
+        };
+        let [hertz, strips, half_space] = ["hertz", "semi-hertzian", "half-space"].map(|normal| cost(&recipe(normal)));
+        assert!(4.0 * hertz < strips && strips < half_space, "{hertz} {strips} {half_space}");
     }
 
     #[test]
