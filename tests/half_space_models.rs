@@ -64,7 +64,7 @@ fn forces_do_not_jump() {
 
 fn largest_change(pair: &Pair, poses: &[Pose]) -> f64 {
     let mut worst = 0.0_f64;
-    for (number, pose) in poses.iter().copied().into_iter().enumerate() {
+    for (number, pose) in poses.iter().copied().enumerate() {
         let at = |s: f64| match number % 3 {
             0 => Pose { lateral: pose.lateral + s, ..pose },
             1 => Pose { yaw: pose.yaw + s, ..pose },
