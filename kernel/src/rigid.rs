@@ -136,8 +136,10 @@ impl<'a> RigidMap<'a> {
         let [u, psi] = fractions.numbers();
         // Every cell of a checked map has its corners.
         let corners = two(self.nodes, lateral * self.row + yaw, self.row).unwrap_or([NOTHING; 2]);
-        let [[a, b], [c, d]] = corners.map(|pair| pair.each_ref().map(Quad::of_singles));
-        let [roll_and_height, slopes] = lerp(lerp(a, c, u), lerp(b, d, u), psi).halves();
+        // Not by `map` of arrays, which a build without link-time optimisation may call instead of inlining.
+        let [[a, b], [c, d]] = corners;
+        let along = |low, high| lerp(Quad::of_singles(low), Quad::of_singles(high), u);
+        let [roll_and_height, slopes] = lerp(along(a, c), along(b, d), psi).halves();
         RigidContact { roll_and_height, slopes }
     }
 
