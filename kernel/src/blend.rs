@@ -17,6 +17,7 @@
 use crate::axis::Places;
 use crate::channel::{BLOCK, Channel, LANES, SLOTS, Scales, Slot};
 use crate::corners::eight;
+use crate::instructions::{Instructions, Quads};
 use crate::layout::RECORD;
 use crate::math::{Quad, Two, single};
 
@@ -80,31 +81,35 @@ impl LaneScales {
 
 /// The cell of the records' grid that a coordinate lies in.
 #[derive(Clone, Copy)]
-pub(crate) struct Cell {
+pub(crate) struct Cell<Q = Quad> {
     /// Where the cell's first record begins, bytes.
     base: u32,
     /// Bytes from one node to the next along lateral, yaw and roll offset.
     strides: [u32; 3],
     /// Running sum of the edges' weights, after edges 0, 2, 4, 6 and after edges 1, 3, 5, 7; the last one is -2²⁷.
-    pub(crate) sums: [Quad; 2],
+    pub(crate) sums: [Q; 2],
     /// Position between the vertical nodes, 0 to 1.
     pub(crate) fraction: f32,
     /// The same outside the axis, not clamped.
     pub(crate) unclamped: f32,
 }
 
-impl Cell {
+impl<Q> Cell<Q> {
     /// The cell at these places (lateral and yaw, roll offset and vertical) of a grid with these strides (bytes); vertical
     /// varies fastest.
     #[inline(always)]
-    pub(crate) fn new(plane: &Places, section: &Places, strides: [u32; 3]) -> Self {
+    pub(crate) fn new<I>(with: I, plane: &Places, section: &Places, strides: [u32; 3]) -> Self
+    where
+        I: Instructions<Quad = Q>,
+        Q: Quads<I>,
+    {
         let ([lateral, yaw], [roll, vertical]) = (plane.cells, section.cells);
         let [i, j, k] = strides;
         let ([roll_fraction, fraction], [_, unclamped]) = (section.fraction.numbers(), section.unclamped().numbers());
         Self {
             base: lateral * i + yaw * j + roll * k + vertical * RECORD_BYTES,
             strides,
-            sums: running_sums(plane.fraction, roll_fraction),
+            sums: running_sums(with, plane.fraction, roll_fraction),
             fraction: single(fraction),
             unclamped: single(unclamped),
         }
@@ -114,13 +119,14 @@ impl Cell {
 /// Running sum of the weights (1 - u or u)(1 - p or p)(1 - r or r) with r fastest, times -2²⁷, by splitting the whole in
 /// two along u, each half along p, each quarter along r.
 #[inline(always)]
-fn running_sums(plane: Two, roll: f64) -> [Quad; 2] {
+fn running_sums<I: Instructions>(with: I, plane: Two, roll: f64) -> [I::Quad; 2] {
     let ([u, p], r) = ((Two::all(1.0) - plane).numbers(), 1.0 - roll);
     let half = ONE * u;
     let (begin, end) = (Two::new([0.0, half]), Two::new([half, ONE]));
     let quarters = begin + (end - begin) * Two::all(p);
-    let (begin, end) = (Quad::join(Two::transpose([begin, quarters])), Quad::join(Two::transpose([quarters, end])));
-    [begin + (end - begin) * Quad::all(r), end]
+    let join = |of| I::Quad::join(with, Two::transpose(of));
+    let (begin, end) = (join([begin, quarters]), join([quarters, end]));
+    [begin + (end - begin) * I::Quad::all(with, r), end]
 }
 
 /// Bytes of a record as `u32`.
@@ -132,7 +138,7 @@ pub(crate) type Edges<'a> = [&'a [u8; 2 * RECORD]; 8];
 
 /// The records of a cell, roll offset fastest, then yaw, then lateral; every cell of a checked table has them.
 #[inline(always)]
-pub(crate) fn edges<'a>(records: &'a [[u8; RECORD]], cell: &Cell) -> Option<Edges<'a>> {
+pub(crate) fn edges<'a, Q>(records: &'a [[u8; RECORD]], cell: &Cell<Q>) -> Option<Edges<'a>> {
     eight(records.as_flattened(), cell.base, cell.strides)
 }
 
@@ -249,6 +255,7 @@ fn whole(x: f64) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::instructions::Baseline;
     use std::vec::Vec;
 
     /// Any numbers: a linear congruential stream.
@@ -272,7 +279,12 @@ mod tests {
 
     /// The first cell of a grid of 2 x 2 x 2 x 2 nodes.
     fn first_cell([u, p, r, t]: [f64; 4]) -> Cell {
-        Cell::new(&Places::first([u, p]), &Places::first([r, t]), [8, 4, 2].map(|records| records * RECORD_BYTES))
+        cell_of(Baseline, [u, p, r, t])
+    }
+
+    fn cell_of<I: Instructions>(with: I, [u, p, r, t]: [f64; 4]) -> Cell<I::Quad> {
+        let strides = [8, 4, 2].map(|records| records * RECORD_BYTES);
+        Cell::new(with, &Places::first([u, p]), &Places::first([r, t]), strides)
     }
 
     /// The corners' product weights and the vertical lines, in `f64`.
@@ -309,7 +321,8 @@ mod tests {
             {
                 assert_eq!(bits(&lanes), bits(&crate::simd::blend_128(&records, &cell, &scales).unwrap()));
                 if let Some(avx2) = crate::simd::Avx2::found() {
-                    assert_eq!(bits(&lanes), bits(&crate::simd::blend_256(avx2, &records, &cell, &scales).unwrap()));
+                    let cell = cell_of(avx2, [u, p, r, t]);
+                    assert_eq!(bits(&lanes), bits(&avx2.blend(&records, &cell, &scales).unwrap()));
                 }
             }
         }

@@ -7,6 +7,7 @@ use crate::blend::Lanes;
 use crate::channel::{BLOCK, LANES, SLOTS, Slot};
 use crate::displacement::Attitude;
 use crate::flags::Flags;
+use crate::instructions::{Eight as _, Instructions};
 use crate::math::{Four, Quad, single};
 use crate::pose::{Side, WheelGeometry};
 
@@ -39,21 +40,18 @@ pub struct Contact {
 
 impl Contact {
     #[cfg(test)]
-    const NONE: Self = Self::new(Slot::Tread, [0.0; 4], [0.0; 4], [0.0; 4]);
+    const NONE: Self = Self::new(Slot::Tread, [0.0; 4]);
 
-    /// A contact from its numbers in order.
+    /// A contact with its last numbers; the others are to be written.
     #[inline]
-    const fn new(slot: Slot, first: [f32; 4], second: [f32; 4], third: [f32; 4]) -> Self {
-        let [normal_force, indentation, x, y] = first;
-        let [z, angle, rolling_radius, wheel_coordinate] = second;
-        let [along, across, wheel_curvature, rail_curvature] = third;
+    const fn new(slot: Slot, [along, across, wheel_curvature, rail_curvature]: [f32; 4]) -> Self {
         Self {
-            normal_force,
-            indentation,
-            position: Vector3::new(x, y, z),
-            angle,
-            rolling_radius,
-            wheel_coordinate,
+            normal_force: 0.0,
+            indentation: 0.0,
+            position: Vector3::new(0.0, 0.0, 0.0),
+            angle: 0.0,
+            rolling_radius: 0.0,
+            wheel_coordinate: 0.0,
             semi_axes: [along, across],
             wheel_curvature,
             rail_curvature,
@@ -225,16 +223,17 @@ impl Contacts {
     /// Takes the slots' contacts that carry force, none if not `valid`; the same work for any number of them. Returns
     /// whether there is any.
     #[inline(always)]
-    pub(crate) fn fill(&mut self, lanes: &Lanes, frame: &Frame<'_>, valid: bool) -> bool {
+    pub(crate) fn fill<I: Instructions>(&mut self, with: I, lanes: &Lanes, frame: &Frame<'_>, valid: bool) -> bool {
         let candidates = rebuild(lanes, frame);
         let carries = candidates.first[0].above_zero() & usize::from(valid).wrapping_neg();
-        let (first, second) = (Four::transpose(candidates.first), Four::transpose(candidates.second));
-        let third = Four::transpose(candidates.third);
+        let (eight, four) = (with.transposed([candidates.first, candidates.second]), Four::transpose(candidates.third));
         self.list.clear();
         let mut length = 0;
-        for (((slot, first), second), third) in Slot::ALL.into_iter().zip(first).zip(second).zip(third) {
+        for ((slot, eight), four) in Slot::ALL.into_iter().zip(eight).zip(four) {
+            let mut contact = Contact::new(slot, four.numbers());
+            eight.write(&mut contact);
             // There is room for as many as there are slots. A contact without force is written too, and taken back.
-            let _ = self.list.push(Contact::new(slot, first.numbers(), second.numbers(), third.numbers()));
+            let _ = self.list.push(contact);
             length += carries >> slot.index() & 1;
             self.list.truncate(length);
         }
@@ -288,12 +287,12 @@ mod tests {
                 lanes.0[Channel::Indentation.lane(slot)] = if bits >> slot.index() & 1 == 1 { 1e-4 } else { -1e-4 };
             }
             let mut contacts = Contacts::NONE;
-            assert_eq!(contacts.fill(&lanes, &frame, true), bits != 0);
+            assert_eq!(contacts.fill(crate::instructions::Baseline, &lanes, &frame, true), bits != 0);
             assert!(contacts.iter().map(|contact| contact.slot).eq(carrying()));
             assert_eq!(contacts.total_normal_force(), contacts.iter().map(|c| c.normal_force).sum::<f32>());
             // Forces grow with the slot.
             assert_eq!(contacts.strongest().map(|c| c.slot), carrying().next_back());
-            assert!(!contacts.fill(&lanes, &frame, false) && contacts.list.is_empty());
+            assert!(!contacts.fill(crate::instructions::Baseline, &lanes, &frame, false) && contacts.list.is_empty());
         }
     }
 }

@@ -1,5 +1,6 @@
 //! From the wheelset's pose to the displacement of one wheel's tape-circle point, and back.
 
+use crate::instructions::{Baseline, Instructions};
 use crate::math::{Angle, Two};
 use crate::pose::{Pose, WheelGeometry};
 
@@ -27,7 +28,12 @@ impl Attitude {
     #[inline]
     #[must_use]
     pub fn new(yaw: f64, roll: f64) -> Self {
-        let [yaw, roll] = Angle::pair(Two::new([yaw, roll]));
+        Self::by(Baseline, yaw, roll)
+    }
+
+    #[inline(always)]
+    pub(crate) fn by<I: Instructions>(with: I, yaw: f64, roll: f64) -> Self {
+        let [yaw, roll] = Angle::pair(with, Two::new([yaw, roll]));
         Self { yaw, roll }
     }
 

@@ -1,5 +1,13 @@
 //! Which of the processor's instructions lookups are made of. All give the same bits.
 
+use core::ops::{Add, Mul, Sub};
+
+use crate::blend::{Cell, LaneScales, Lanes};
+use crate::channel::SLOTS;
+use crate::contact::Contact;
+use crate::layout::RECORD;
+use crate::math::{Four, Quad, Two};
+
 #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
 pub(crate) use crate::simd::Avx2;
 #[cfg(not(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable"))))]
@@ -35,6 +43,91 @@ impl core::fmt::Display for InstructionSet {
             Self::Baseline => "baseline",
             Self::Avx2 => "AVX2",
         })
+    }
+}
+
+/// A set of instructions, as the parts of a lookup are made of it.
+pub(crate) trait Instructions: Copy {
+    /// Four `f64` that take the same operations.
+    type Quad: Quads<Self>;
+
+    /// Blended lanes in their units; none for a cell beyond the records.
+    fn blend(self, records: &[[u8; RECORD]], cell: &Cell<Self::Quad>, scales: &LaneScales) -> Option<Lanes>;
+
+    /// The first eight numbers of the slots' contacts, given number by number for all slots, as [`Eight`]s.
+    fn transposed(self, numbers: [[Four; 4]; 2]) -> [impl Eight; SLOTS];
+}
+
+/// The first eight numbers of a contact.
+pub(crate) trait Eight {
+    fn write(self, contact: &mut Contact);
+}
+
+/// See [`Instructions::Quad`].
+pub(crate) trait Quads<I>: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+    /// Four times the same.
+    fn all(with: I, x: f64) -> Self;
+    /// Four little-endian `f32`.
+    fn of_singles(with: I, bytes: &[u8; 16]) -> Self;
+    fn join(with: I, halves: [Two; 2]) -> Self;
+    fn halves(self) -> [Two; 2];
+}
+
+/// [`InstructionSet::Baseline`].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Baseline;
+
+impl Instructions for Baseline {
+    type Quad = Quad;
+
+    #[inline(always)]
+    fn blend(self, records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales) -> Option<Lanes> {
+        #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
+        return crate::simd::blend_128(records, cell, scales);
+        #[cfg(all(target_arch = "arm", not(feature = "portable")))]
+        return crate::arm::blend(records, cell, scales);
+        #[cfg(any(
+            not(any(target_arch = "arm", all(target_arch = "x86_64", target_feature = "sse2"))),
+            feature = "portable"
+        ))]
+        return crate::blend::portable(records, cell, scales);
+    }
+
+    #[inline(always)]
+    fn transposed(self, [first, second]: [[Four; 4]; 2]) -> [impl Eight; SLOTS] {
+        let ([a, b, c, _], [d, e, f, _]) = (Four::transpose(first), Four::transpose(second));
+        [[a, d], [b, e], [c, f]]
+    }
+}
+
+impl Eight for [Four; 2] {
+    #[inline(always)]
+    fn write(self, contact: &mut Contact) {
+        let [first, second] = self;
+        [contact.normal_force, contact.indentation, contact.position.x, contact.position.y] = first.numbers();
+        [contact.position.z, contact.angle, contact.rolling_radius, contact.wheel_coordinate] = second.numbers();
+    }
+}
+
+impl Quads<Baseline> for Quad {
+    #[inline(always)]
+    fn all(_: Baseline, x: f64) -> Self {
+        Self::all(x)
+    }
+
+    #[inline(always)]
+    fn of_singles(_: Baseline, bytes: &[u8; 16]) -> Self {
+        Self::of_singles(bytes)
+    }
+
+    #[inline(always)]
+    fn join(_: Baseline, halves: [Two; 2]) -> Self {
+        Self::join(halves)
+    }
+
+    #[inline(always)]
+    fn halves(self) -> [Two; 2] {
+        Self::halves(self)
     }
 }
 

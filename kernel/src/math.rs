@@ -5,6 +5,8 @@ pub(crate) use crate::lanes::{Four, Mask, Quad, Two};
 #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
 pub(crate) use crate::simd::{Four, Mask, Quad, Two};
 
+use crate::instructions::{Baseline, Instructions, Quads};
+
 /// Largest angle of yaw and roll that is computed, rad; larger ones are clamped and flagged.
 pub const ANGLE_LIMIT: f64 = 0.125;
 
@@ -31,7 +33,7 @@ impl Angle {
     #[inline]
     #[must_use]
     pub fn new(angle: f64) -> Self {
-        let [angle, _] = Self::pair(Two::all(angle));
+        let [angle, _] = Self::pair(Baseline, Two::all(angle));
         angle
     }
 
@@ -44,15 +46,16 @@ impl Angle {
     ///
     /// with p(a, b, c, d) = x² ((a + x² b) + x⁴ (c + x² d)), for the sines and the versines together.
     #[inline(always)]
-    pub(crate) fn pair(angles: Two) -> [Self; 2] {
+    pub(crate) fn pair<I: Instructions>(with: I, angles: Two) -> [Self; 2] {
         let x = angles.at_least(Two::all(-ANGLE_LIMIT)).at_most(Two::all(ANGLE_LIMIT));
         let squares = x * x;
-        let both = |sine: f64, versine: f64| Quad::join([Two::all(sine), Two::all(versine)]);
-        let t = Quad::join([squares, squares]);
+        let join = |halves| I::Quad::join(with, halves);
+        let both = |sine: f64, versine: f64| join([Two::all(sine), Two::all(versine)]);
+        let t = join([squares, squares]);
         let low = both(-1.0 / 6.0, -1.0 / 24.0) + t * both(1.0 / 120.0, 1.0 / 720.0);
         let high = both(-1.0 / 5040.0, -1.0 / 40_320.0) + t * both(1.0 / 362_880.0, 1.0 / 3_628_800.0);
         let p = t * (low + (t * t) * high);
-        let factor = Quad::join([x, squares]);
+        let factor = join([x, squares]);
         let [sin, versine] = (factor * both(1.0, 0.5) + factor * p).halves();
         let cos = Two::all(1.0) - versine;
         let limited = x.differs(angles);

@@ -4,8 +4,9 @@ use crate::axis::{Axis, AxisPair, Places};
 use crate::corners::two;
 use crate::displacement::{Displacement, pose_with};
 use crate::header::MAX_PARTS;
+use crate::instructions::{Baseline, Instructions, Quads};
 use crate::layout::{RIGID, refined};
-use crate::math::{Quad, Two, at_least, at_most};
+use crate::math::{Two, at_least, at_most};
 use crate::pose::{Pose, WheelGeometry};
 
 /// Coordinates of a canonical pose in the table.
@@ -81,8 +82,8 @@ impl core::fmt::Debug for RigidMap<'_> {
 
 /// a + t (b - a)
 #[inline(always)]
-fn lerp(a: Quad, b: Quad, t: f64) -> Quad {
-    a + Quad::all(t) * (b - a)
+fn lerp<I: Instructions>(with: I, a: I::Quad, b: I::Quad, t: f64) -> I::Quad {
+    a + I::Quad::all(with, t) * (b - a)
 }
 
 /// The rigid contact at a lateral displacement and yaw.
@@ -131,15 +132,16 @@ impl<'a> RigidMap<'a> {
 
     /// Bilinear between the nodes around a place.
     #[inline(always)]
-    fn contact(&self, places: &Places) -> RigidContact {
+    fn contact<I: Instructions>(&self, with: I, places: &Places) -> RigidContact {
         let ([lateral, yaw], fractions) = self.parts.of(places.cells, places.fraction);
         let [u, psi] = fractions.numbers();
         // Every cell of a checked map has its corners.
         let corners = two(self.nodes, lateral * self.row + yaw, self.row).unwrap_or([NOTHING; 2]);
         // Not by `map` of arrays, which a build without link-time optimisation may call instead of inlining.
         let [[a, b], [c, d]] = corners;
-        let along = |low, high| lerp(Quad::of_singles(low), Quad::of_singles(high), u);
-        let [roll_and_height, slopes] = lerp(along(a, c), along(b, d), psi).halves();
+        let node = |bytes| I::Quad::of_singles(with, bytes);
+        let along = |low, high| lerp(with, node(low), node(high), u);
+        let [roll_and_height, slopes] = lerp(with, along(a, c), along(b, d), psi).halves();
         RigidContact { roll_and_height, slopes }
     }
 
@@ -155,7 +157,7 @@ impl<'a> RigidMap<'a> {
     #[inline]
     #[must_use]
     pub fn roll(&self, lateral: f64, yaw: f64) -> f64 {
-        let [roll, _] = self.contact(&self.plane(lateral, yaw)).roll_and_height.numbers();
+        let [roll, _] = self.contact(Baseline, &self.plane(lateral, yaw)).roll_and_height.numbers();
         roll
     }
 
@@ -164,7 +166,7 @@ impl<'a> RigidMap<'a> {
     #[inline]
     #[must_use]
     pub fn vertical(&self, lateral: f64, yaw: f64, roll_offset: f64) -> f64 {
-        let contact = self.contact(&self.plane(lateral, yaw));
+        let contact = self.contact(Baseline, &self.plane(lateral, yaw));
         let [_, height] = contact.roll_and_height.numbers();
         height + self.rise(&contact, roll_offset)
     }
@@ -178,14 +180,20 @@ impl<'a> RigidMap<'a> {
     #[inline(always)]
     #[must_use]
     pub fn coordinates(&self, displacement: &Displacement, yaw: f64, roll: f64) -> Coordinates {
-        self.locate(displacement, yaw, roll).0
+        self.locate(Baseline, displacement, yaw, roll).0
     }
 
     /// [`RigidMap::coordinates`] with the places of lateral and yaw found on the way.
     #[inline(always)]
-    pub(crate) fn locate(&self, displacement: &Displacement, yaw: f64, roll: f64) -> (Coordinates, Places) {
+    pub(crate) fn locate<I: Instructions>(
+        &self,
+        with: I,
+        displacement: &Displacement,
+        yaw: f64,
+        roll: f64,
+    ) -> (Coordinates, Places) {
         let plane = self.plane(displacement.lateral, yaw);
-        let contact = self.contact(&plane);
+        let contact = self.contact(with, &plane);
         let [roll_offset, above] = (Two::new([roll, displacement.vertical]) - contact.roll_and_height).numbers();
         let vertical = above - self.rise(&contact, roll_offset);
         (Coordinates { lateral: displacement.lateral, yaw, roll_offset, vertical }, plane)

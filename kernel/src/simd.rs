@@ -16,7 +16,7 @@ use crate::layout::RECORD;
 
 pub(crate) use avx2::Avx2;
 pub(crate) use blend::{blend_128, blend_256};
-pub(crate) use quad::Quad;
+pub(crate) use quad::{Quad, WideQuad};
 
 /// Four `f32` that take the same operations; as [`crate::lanes::Four`].
 #[derive(Clone, Copy)]

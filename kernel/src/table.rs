@@ -13,7 +13,7 @@ use crate::displacement::{Attitude, Displacement, displacement};
 use crate::error::TableError;
 use crate::flags::Flags;
 use crate::header::{Header, SideHeader};
-use crate::instructions::{Avx2, InstructionSet};
+use crate::instructions::{Avx2, Baseline, InstructionSet, Instructions};
 use crate::layout::{RECORD, Sections, SideSections};
 use crate::math::Two;
 use crate::pose::{Canonical, Pose, Side, WheelGeometry};
@@ -58,9 +58,9 @@ struct Located {
 }
 
 /// A lookup before its records are read.
-struct Prepared {
+struct Prepared<Q> {
     located: Located,
-    cell: Cell,
+    cell: Cell<Q>,
     flags: Flags,
 }
 
@@ -197,7 +197,7 @@ impl<'a> ContactTable<'a> {
     /// Coordinates of a pose in the table, mirrored to the right wheel with yaw >= 0 and not clamped to the table.
     #[must_use]
     pub fn coordinates(&self, side: Side, pose: &Pose) -> Coordinates {
-        self.locate(side, pose).coordinates
+        self.locate(Baseline, side, pose).coordinates
     }
 
     /// The integers of the record at a node (lateral, yaw, roll offset, vertical); none beyond the axes.
@@ -213,8 +213,8 @@ impl<'a> ContactTable<'a> {
     pub fn channels(&self, side: Side, at: &Coordinates) -> [[f32; CHANNELS]; SLOTS] {
         let side = self.side(side);
         let plane = side.rigid.plane(at.lateral, at.yaw);
-        let (cell, _) = self.cell(&plane, at);
-        side.blend(None, &cell).map_or([[0.0; CHANNELS]; SLOTS], |lanes| slots(&lanes))
+        let (cell, _) = self.cell(Baseline, &plane, at);
+        Baseline.blend(side.records, &cell, &side.scales).map_or([[0.0; CHANNELS]; SLOTS], |lanes| slots(&lanes))
     }
 
     /// Asks for the sixteen records of a pose, so that they are in the cache when the lookup comes, while the caller
@@ -222,11 +222,11 @@ impl<'a> ContactTable<'a> {
     /// in-order core waits for that, and then a lookup alone is the better choice.
     #[inline]
     pub fn prefetch(&self, side: Side, pose: &Pose) {
-        self.prefetch_cell(side, &self.prepare(side, pose).cell);
+        self.prefetch_cell(side, &self.prepare(Baseline, side, pose).cell);
     }
 
     #[inline(always)]
-    fn prefetch_cell(&self, side: Side, cell: &Cell) {
+    fn prefetch_cell<Q>(&self, side: Side, cell: &Cell<Q>) {
         for edge in edges(self.side(side).records, cell).into_iter().flatten() {
             edge.as_chunks::<RECORD>().0.iter().for_each(prefetch);
         }
@@ -254,7 +254,7 @@ impl<'a> ContactTable<'a> {
     #[cfg_attr(target_arch = "arm", inline)]
     #[cfg_attr(not(target_arch = "arm"), inline(never))]
     fn contacts_into_baseline(&self, side: Side, pose: &Pose, contacts: &mut Contacts) {
-        self.look_up(None, side, pose, contacts);
+        self.look_up(Baseline, side, pose, contacts);
     }
 
     /// Contacts of several wheels, as [`ContactTable::contacts`] gives them: records are asked for four wheels before they
@@ -268,52 +268,52 @@ impl<'a> ContactTable<'a> {
 
     #[inline(never)]
     fn contacts_many_baseline(&self, wheels: &[(Side, Pose)], contacts: &mut [Contacts]) {
-        self.look_up_many(None, wheels, contacts);
+        self.look_up_many(Baseline, wheels, contacts);
     }
 
-    /// [`ContactTable::contacts_into`], with AVX2 where the caller was compiled for it.
+    /// [`ContactTable::contacts_into`] by these instructions, which the caller was compiled for.
     #[inline(always)]
-    pub(crate) fn look_up(&self, avx2: Option<Avx2>, side: Side, pose: &Pose, contacts: &mut Contacts) {
-        self.finish(avx2, side, &self.prepare(side, pose), contacts);
+    pub(crate) fn look_up<I: Instructions>(&self, with: I, side: Side, pose: &Pose, contacts: &mut Contacts) {
+        self.finish(with, side, &self.prepare(with, side, pose), contacts);
     }
 
     /// [`ContactTable::contacts_many`] in the same way.
     #[inline(always)]
-    pub(crate) fn look_up_many(&self, avx2: Option<Avx2>, wheels: &[(Side, Pose)], contacts: &mut [Contacts]) {
+    pub(crate) fn look_up_many<I: Instructions>(&self, with: I, wheels: &[(Side, Pose)], contacts: &mut [Contacts]) {
         let mut contacts = contacts.iter_mut();
         let mut ahead = heapless::Deque::<_, AHEAD>::new();
         for (side, pose) in wheels.iter().take(contacts.len()) {
             if ahead.is_full()
                 && let (Some((side, one)), Some(contacts)) = (ahead.pop_front(), contacts.next())
             {
-                self.finish(avx2, side, &one, contacts);
+                self.finish(with, side, &one, contacts);
             }
-            let one = self.prepare(*side, pose);
+            let one = self.prepare(with, *side, pose);
             self.prefetch_cell(*side, &one.cell);
             // There is room.
             let _ = ahead.push_back((*side, one));
         }
         for ((side, one), contacts) in ahead.iter().zip(contacts) {
-            self.finish(avx2, *side, one, contacts);
+            self.finish(with, *side, one, contacts);
         }
     }
 
     /// All of a lookup before the records are read.
     #[inline(always)]
-    fn prepare(&self, side: Side, pose: &Pose) -> Prepared {
-        let located = self.locate(side, pose);
-        let (cell, flags) = self.cell(&located.plane, &located.coordinates);
+    fn prepare<I: Instructions>(&self, with: I, side: Side, pose: &Pose) -> Prepared<I::Quad> {
+        let located = self.locate(with, side, pose);
+        let (cell, flags) = self.cell(with, &located.plane, &located.coordinates);
         Prepared { located, cell, flags }
     }
 
     /// The rest of it.
     #[inline(always)]
-    fn finish(&self, avx2: Option<Avx2>, side: Side, prepared: &Prepared, contacts: &mut Contacts) {
+    fn finish<I: Instructions>(&self, with: I, side: Side, prepared: &Prepared<I::Quad>, contacts: &mut Contacts) {
         let data = self.side(side);
         let Prepared { located, cell, flags } = prepared;
         // Through memory that the compiler cannot see through: it would interleave the blend's parts with what follows,
         // and spill more registers than it saves.
-        let Some(lanes) = data.blend(avx2, cell) else { return *contacts = Contacts::NONE };
+        let Some(lanes) = with.blend(data.records, cell, &data.scales) else { return *contacts = Contacts::NONE };
         let lanes = black_box(&lanes);
         let frame = Frame {
             wheel: &data.wheel,
@@ -322,7 +322,7 @@ impl<'a> ContactTable<'a> {
             place: [located.displacement.lateral + data.geometry.lateral_position, located.displacement.vertical],
             arm: data.geometry.lateral_position - located.attitude.inwards(&data.geometry),
         };
-        let force = contacts.fill(lanes, &frame, located.valid);
+        let force = contacts.fill(with, lanes, &frame, located.valid);
         let conformal = lanes.0.get(CONFORMAL_LANE).copied().unwrap_or_default();
         let remarks = *flags
             | Flags::ANGLE_LIMITED.when(located.attitude.yaw.limited | located.attitude.roll.limited)
@@ -335,22 +335,22 @@ impl<'a> ContactTable<'a> {
     }
 
     #[inline(always)]
-    fn locate(&self, side: Side, pose: &Pose) -> Located {
+    fn locate<I: Instructions>(&self, with: I, side: Side, pose: &Pose) -> Located {
         let data = self.side(side);
         // An invalid pose costs the same: what is no number is limited like any other.
         let (canonical, valid) = (pose.mirrored(data.sign), pose.is_valid());
-        let attitude = Attitude::new(canonical.pose.yaw, canonical.pose.roll);
+        let attitude = Attitude::by(with, canonical.pose.yaw, canonical.pose.roll);
         let displacement = Displacement::new(&data.geometry, &canonical.pose, &attitude);
-        let (coordinates, plane) = data.rigid.locate(&displacement, attitude.yaw.value, attitude.roll.value);
+        let (coordinates, plane) = data.rigid.locate(with, &displacement, attitude.yaw.value, attitude.roll.value);
         Located { valid, canonical, attitude, displacement, coordinates, plane }
     }
 
     #[inline(always)]
-    fn cell(&self, plane: &Places, at: &Coordinates) -> (Cell, Flags) {
+    fn cell<I: Instructions>(&self, with: I, plane: &Places, at: &Coordinates) -> (Cell<I::Quad>, Flags) {
         let section = self.section.locate(Two::new([at.roll_offset, at.vertical]));
         // The flags of the four axes are the lowest four bits, in the axes' order.
         let flags = Flags::of_axes(plane.clamped | section.clamped << 2);
-        (Cell::new(plane, &section, self.strides), flags)
+        (Cell::new(with, plane, &section, self.strides), flags)
     }
 }
 
@@ -397,27 +397,6 @@ impl<'a> SideData<'a> {
     fn turn(&mut self, side: Side) {
         self.sign = side.sign();
         self.wheel = Wheel::new(&self.geometry, side);
-    }
-
-    /// Blended lanes in their units. All ways give the same bits.
-    #[inline(always)]
-    #[cfg_attr(
-        not(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable"))),
-        expect(unused_variables, reason = "there is no AVX2")
-    )]
-    fn blend(&self, avx2: Option<Avx2>, cell: &Cell) -> Option<Lanes> {
-        #[cfg(all(target_arch = "arm", not(feature = "portable")))]
-        return crate::arm::blend(self.records, cell, &self.scales);
-        #[cfg(any(
-            not(any(target_arch = "arm", all(target_arch = "x86_64", target_feature = "sse2"))),
-            feature = "portable"
-        ))]
-        return crate::blend::portable(self.records, cell, &self.scales);
-        #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
-        match avx2 {
-            Some(avx2) => crate::simd::blend_256(avx2, self.records, cell, &self.scales),
-            None => crate::simd::blend_128(self.records, cell, &self.scales),
-        }
     }
 }
 

@@ -1,9 +1,15 @@
 //! Whether there is AVX2, and lookups compiled for it: what is inlined into them may use its instructions, and vectors
 //! of 128 bits get their three-operand forms.
 
-use core::arch::x86_64::{__cpuid, __cpuid_count, _xgetbv};
+use core::arch::x86_64::*;
+use core::mem::offset_of;
 
-use crate::contact::Contacts;
+use super::{Four, WideQuad};
+use crate::blend::{Cell, LaneScales, Lanes};
+use crate::channel::SLOTS;
+use crate::contact::{Contact, Contacts};
+use crate::instructions::{Eight, Instructions};
+use crate::layout::RECORD;
 use crate::pose::{Pose, Side};
 use crate::table::ContactTable;
 
@@ -30,14 +36,52 @@ impl Avx2 {
     }
 }
 
+impl Instructions for Avx2 {
+    type Quad = WideQuad;
+
+    #[inline(always)]
+    fn blend(self, records: &[[u8; RECORD]], cell: &Cell<WideQuad>, scales: &LaneScales) -> Option<Lanes> {
+        super::blend_256(self, records, cell, scales)
+    }
+
+    #[inline(always)]
+    fn transposed(self, [[a, b, c, d], [e, f, g, h]]: [[Four; 4]; 2]) -> [impl Eight; SLOTS] {
+        // SAFETY: there is AVX2. The same below.
+        unsafe {
+            let join = |low: Four, high: Four| _mm256_set_m128(high.0, low.0);
+            let (a, b, c, d) = (join(a, e), join(b, f), join(c, g), join(d, h));
+            let (ab, cd) = (_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d));
+            let (ab_high, cd_high) = (_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d));
+            [
+                WideEight(_mm256_shuffle_ps::<0b01_00_01_00>(ab, cd)),
+                WideEight(_mm256_shuffle_ps::<0b11_10_11_10>(ab, cd)),
+                WideEight(_mm256_shuffle_ps::<0b01_00_01_00>(ab_high, cd_high)),
+            ]
+        }
+    }
+}
+
+/// Eight `f32`.
+struct WideEight(__m256);
+
+impl Eight for WideEight {
+    #[inline(always)]
+    fn write(self, contact: &mut Contact) {
+        const _: () =
+            assert!(offset_of!(Contact, semi_axes) == size_of::<[f32; 8]>() && offset_of!(Contact, normal_force) == 0);
+        // The contact begins with eight `f32`, all that the store writes; it asks for no alignment.
+        unsafe { _mm256_storeu_ps((&raw mut *contact).cast(), self.0) }
+    }
+}
+
 #[target_feature(enable = "avx2")]
 fn contacts_into(avx2: Avx2, table: &ContactTable<'_>, side: Side, pose: &Pose, contacts: &mut Contacts) {
-    table.look_up(Some(avx2), side, pose, contacts);
+    table.look_up(avx2, side, pose, contacts);
 }
 
 #[target_feature(enable = "avx2")]
 fn contacts_many(avx2: Avx2, table: &ContactTable<'_>, wheels: &[(Side, Pose)], contacts: &mut [Contacts]) {
-    table.look_up_many(Some(avx2), wheels, contacts);
+    table.look_up_many(avx2, wheels, contacts);
 }
 
 #[allow(unused_unsafe, reason = "asking is safe from Rust 1.93 on")]

@@ -4,7 +4,7 @@
 use core::arch::x86_64::*;
 use core::sync::atomic::{Ordering, compiler_fence};
 
-use super::{Avx2, Quad, numbers};
+use super::{Avx2, Quad, WideQuad, numbers};
 use crate::blend::{Cell, FINE, FINE_BITS, FINE_MASK, FINE_STEP, LaneScales, Lanes, edges, fractions};
 use crate::channel::{BLOCK, LANES, SLOTS};
 use crate::layout::RECORD;
@@ -16,11 +16,10 @@ struct Weights {
 }
 
 impl Weights {
+    /// Of the running sums, rounded to the nearest integers, half to even, as `whole` does.
     #[inline(always)]
-    fn new(cell: &Cell) -> Self {
+    fn new([even, odd]: [__m128i; 2]) -> Self {
         unsafe {
-            // Rounded to the nearest integer, half to even, as `whole` does.
-            let [even, odd] = cell.sums.map(Quad::rounded);
             let (low, high) = (_mm_unpacklo_epi32(even, odd), _mm_unpackhi_epi32(even, odd));
             let (coarse, mask) = (|sums| _mm_srai_epi32::<{ FINE_BITS as i32 }>(sums), _mm_set1_epi32(FINE_MASK));
             Self {
@@ -70,7 +69,7 @@ fn pairs(w: __m128i) -> [__m128i; 4] {
 type EdgePairs<'a> = [[&'a [u8; 2 * RECORD]; 2]; 4];
 
 #[inline(always)]
-fn edge_pairs<'a>(records: &'a [[u8; RECORD]], cell: &Cell) -> Option<EdgePairs<'a>> {
+fn edge_pairs<'a, Q>(records: &'a [[u8; RECORD]], cell: &Cell<Q>) -> Option<EdgePairs<'a>> {
     let [a, b, c, d, e, f, g, h] = edges(records, cell)?;
     Some([[a, b], [c, d], [e, f], [g, h]])
 }
@@ -85,7 +84,7 @@ fn base_and_rise([low, high]: [__m128i; 2]) -> [__m128; 2] {
 #[inline(always)]
 pub(crate) fn blend_128(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales) -> Option<Lanes> {
     let edges = edge_pairs(records, cell)?;
-    let weights = Weights::new(cell);
+    let weights = Weights::new(cell.sums.map(Quad::rounded));
     let weights = (pairs(weights.coarse), pairs(weights.fine));
     let mut lanes = Lanes::ZERO;
     if let [a, b, c, d, e, f, g, h] = lanes.0.as_chunks_mut().0 {
@@ -113,8 +112,8 @@ fn eight<const V: usize>(
         // [lanes 0 to 4 or 4 to 8][lower or upper node]
         let mut sums = [[_mm_setzero_si128(); 2]; 2];
         let mut fine_sums = sums;
-        for ((pair, coarse), fine) in edges.iter().zip(coarse).zip(fine) {
-            for node in 0..2 {
+        for node in 0..2 {
+            for ((pair, coarse), fine) in edges.iter().zip(coarse).zip(fine) {
                 let [a, b] = pair.map(|edge| load_128::<V>(edge, node));
                 for (half, q) in [_mm_unpacklo_epi16(a, b), _mm_unpackhi_epi16(a, b)].into_iter().enumerate() {
                     let (sum, fine_sum) = (&mut sums[half][node], &mut fine_sums[half][node]);
@@ -149,10 +148,15 @@ fn four([a, b, c, d]: [f32; 4]) -> __m128 {
 
 /// [`portable`](crate::blend::portable) with vectors of 256 bits.
 #[inline(always)]
-pub(crate) fn blend_256(_: Avx2, records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales) -> Option<Lanes> {
+pub(crate) fn blend_256(
+    _: Avx2,
+    records: &[[u8; RECORD]],
+    cell: &Cell<WideQuad>,
+    scales: &LaneScales,
+) -> Option<Lanes> {
     unsafe {
         let edges = edge_pairs(records, cell)?;
-        let weights = Weights::new(cell);
+        let weights = Weights::new(cell.sums.map(WideQuad::rounded));
         let (coarse, fine) = (wide_pairs(weights.coarse), wide_pairs(weights.fine));
         let mut lanes = Lanes::ZERO;
         if let [a, b, c, d] = lanes.0.as_chunks_mut().0 {
@@ -181,12 +185,12 @@ const _: () = assert!(FINE[0] && FINE[1] && !FINE[2] && !FINE[3]);
 #[inline(always)]
 fn wide_pairs(w: __m128i) -> [__m256i; 4] {
     unsafe {
-        let [a, b, c, d] = pairs(w);
+        let w = _mm256_broadcastsi128_si256(w);
         [
-            _mm256_broadcastsi128_si256(a),
-            _mm256_broadcastsi128_si256(b),
-            _mm256_broadcastsi128_si256(c),
-            _mm256_broadcastsi128_si256(d),
+            _mm256_shuffle_epi32::<0x00>(w),
+            _mm256_shuffle_epi32::<0x55>(w),
+            _mm256_shuffle_epi32::<0xaa>(w),
+            _mm256_shuffle_epi32::<0xff>(w),
         ]
     }
 }
@@ -242,8 +246,8 @@ fn sixteen<const V: usize>(edges: &EdgePairs<'_>, coarse: &[__m256i; 4], fine: &
         // At the lower node and at the upper one.
         let zero = [_mm256_setzero_si256(); 2];
         let (mut odd, mut even, mut first_fine) = (zero, zero, zero);
-        for (([a, b], coarse), fine) in edges.iter().zip(coarse).zip(fine) {
-            for node in 0..2 {
+        for node in 0..2 {
+            for (([a, b], coarse), fine) in edges.iter().zip(coarse).zip(fine) {
                 let (a, b) = (load_256::<V>(a, node), load_256::<V>(b, node));
                 let (low, high) = (_mm256_unpacklo_epi16(a, b), _mm256_unpackhi_epi16(a, b));
                 odd[node] = _mm256_add_epi32(odd[node], _mm256_madd_epi16(low, *coarse));

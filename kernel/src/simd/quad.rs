@@ -1,10 +1,10 @@
-//! Four `f64`, as [`crate::lanes::Quad`], in two vectors of 128 bits. One of 256 bits would save 20 instructions of a
-//! lookup with AVX2, for a second path through all that comes before the blend.
+//! Four `f64`, as [`crate::lanes::Quad`]: in two vectors of 128 bits, or in one of 256 where there is AVX2.
 
 use core::arch::x86_64::*;
 use core::ops::{Add, Mul, Sub};
 
-use super::{Four, Two};
+use super::{Avx2, Four, Two};
+use crate::instructions::Quads;
 
 /// Four `f64` that take the same operations.
 #[derive(Clone, Copy)]
@@ -90,4 +90,64 @@ impl Mul for Quad {
 fn both(a: Quad, b: Quad, f: impl Fn(Two, Two) -> Two) -> Quad {
     let ([a_low, a_high], [b_low, b_high]) = (a.halves(), b.halves());
     Quad::join([f(a_low, b_low), f(a_high, b_high)])
+}
+
+/// [`Quad`] in one vector. Whoever has one has had an [`Avx2`] to make it with.
+#[derive(Clone, Copy)]
+pub(crate) struct WideQuad(__m256d);
+
+// SAFETY of every block below: there is AVX2, and with it AVX.
+impl Quads<Avx2> for WideQuad {
+    #[inline(always)]
+    fn all(_: Avx2, x: f64) -> Self {
+        Self(unsafe { _mm256_set1_pd(x) })
+    }
+
+    #[inline(always)]
+    fn of_singles(_: Avx2, bytes: &[u8; 16]) -> Self {
+        // The pointer is that of sixteen bytes, and the load asks for no alignment.
+        Self(unsafe { _mm256_cvtps_pd(_mm_castsi128_ps(_mm_loadu_si128(bytes.as_ptr().cast()))) })
+    }
+
+    #[inline(always)]
+    fn join(_: Avx2, [low, high]: [Two; 2]) -> Self {
+        Self(unsafe { _mm256_set_m128d(high.0, low.0) })
+    }
+
+    #[inline(always)]
+    fn halves(self) -> [Two; 2] {
+        unsafe { [Two(_mm256_castpd256_pd128(self.0)), Two(_mm256_extractf128_pd::<1>(self.0))] }
+    }
+}
+
+impl WideQuad {
+    /// Rounded to the nearest integers, half to even.
+    #[inline(always)]
+    pub(crate) fn rounded(self) -> __m128i {
+        unsafe { _mm256_cvtpd_epi32(self.0) }
+    }
+}
+
+impl Add for WideQuad {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(unsafe { _mm256_add_pd(self.0, other.0) })
+    }
+}
+
+impl Sub for WideQuad {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self(unsafe { _mm256_sub_pd(self.0, other.0) })
+    }
+}
+
+impl Mul for WideQuad {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self(unsafe { _mm256_mul_pd(self.0, other.0) })
+    }
 }
