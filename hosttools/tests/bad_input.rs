@@ -1,11 +1,9 @@
 //! Bad input: the program ends with exit status 2 and one line on stderr that names the file, the place in it and the
 //! value, and leaves nothing behind.
 
-mod common;
-
 use std::process::{Output, Stdio};
 
-use common::{Folder, POSES, RECIPE, table};
+use crate::common::{Folder, POSES, RECIPE, table};
 
 /// What is wrong, the files that differ from the good ones, the command, and what its one line must contain.
 struct Case<'a> {
