@@ -91,7 +91,7 @@ for cpu in cortex-m7 cortex-m4; do
   programs="$work/$cpu"
   mkdir "$programs"
   cp "$targets/$triple/release/"{lookups,smallest,template,fixed-step} "$programs/"
-  (cd "$work" && timeout 300 qemu-system-arm -cpu $cpu -machine "$(machine $cpu)" -display none -monitor none -serial none \
+  (cd "$work" && timeout 900 qemu-system-arm -cpu $cpu -machine "$(machine $cpu)" -display none -monitor none -serial none \
     -semihosting-config enable=on,target=native -icount shift=0 -kernel "$programs/lookups" >answers.bin) ||
     fail "$cpu: the firmware did not end well"
   sizes="\"flash_bytes\": $(flash "$programs/smallest"), \"static_bytes\": $(bytes "$programs/smallest" 'data|bss|uninit')"
