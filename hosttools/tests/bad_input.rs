@@ -97,7 +97,7 @@ fn recipes() {
             "unknown section",
             vec![("recipe.toml", format!("{RECIPE}[grids]\n").into())],
             COMPILE,
-            &["recipe.toml:21: ", "unknown field `grids`"],
+            &["recipe.toml:22: ", "unknown field `grids`"],
         ),
         case(
             "missing key",
@@ -141,6 +141,12 @@ fn recipes() {
             &["recipe.toml:17: ", "nodes = \"many\""],
         ),
         case("half a node", recipe("nodes = 21", "nodes = 2.5"), COMPILE, &["recipe.toml:17: ", "nodes"]),
+        case(
+            "too few poses",
+            recipe("error_poses = 500", "error_poses = 50"),
+            COMPILE,
+            &["recipe.toml: grid.error_poses: 50 is not between 100 "],
+        ),
         case("neither gauge nor origin", recipe("gauge_m = 1.435\n", ""), COMPILE, &["recipe.toml: rail: ", "gauge_m"]),
         case(
             "profile that cannot reach the rail",
