@@ -72,14 +72,14 @@ start() {
   board=$!
 }
 stop() { kill "$board" && { wait "$board" || true; board=; }; }
-# await PATTERN FILE: waits until a line says so, for a minute.
+# await PATTERN FILE: waits until a line says so, for five minutes: other programs may run beside.
 await() {
   local i
-  for ((i = 0; i < 600; i++)); do
+  for ((i = 0; i < 3000; i++)); do
     if grep -qE "$1" "$2" 2>/dev/null; then return 0; fi
     sleep 0.1
   done
-  fail "no \"$1\" within a minute: $(cat "$2")"
+  fail "no \"$1\" within five minutes: $(cat "$2")"
 }
 
 CARGO_TARGET_DIR="$here/target" cargo build --quiet --release --locked -p flangeway-compare
