@@ -1,8 +1,6 @@
 //! The direct solver where the answer is known in closed form: a sphere on a plane, a cone on a cylinder.
 
-mod common;
-
-use common::MM;
+use crate::common::{self, MM};
 use flangeway::{Pose, Side};
 use flangeway_host::contact::{SLOTS, SlotState};
 use flangeway_host::contacts::track_position;

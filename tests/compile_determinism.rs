@@ -1,8 +1,6 @@
 //! The same recipe gives the same bytes, and a wheelset of two different wheels gives each side its own answer.
 
-mod common;
-
-use common::{Draws, Small};
+use crate::common::{self, Draws, Small};
 use flangeway::{AxisName, ContactTable, Coordinates, Pose, Side};
 use flangeway_host::compile::{Uniform, compile};
 use flangeway_host::pair::Pair;

@@ -1,7 +1,6 @@
 //! Fitted node values against sampled ones of the same grid, on poses that neither has seen.
 
-mod common;
-
+use crate::common;
 use flangeway::{Channel, ContactTable, Side, Slot};
 use flangeway_host::compile::{Uniform, compile};
 use flangeway_host::pair::Pair;
@@ -11,6 +10,7 @@ use flangeway_host::verify::{Quantiles, sample};
 #[test]
 fn fitted_nodes_err_less_than_sampled_ones() {
     let mut recipe = common::built_in();
+    recipe.grid.error_poses = Some(500); // other poses are sampled below
     let pair = Pair::build(&recipe).unwrap();
     let counts: Uniform = "61x7x5x3".parse().unwrap();
     let [sampled, fitted] = [NodeValues::Sampled, NodeValues::Fitted].map(|values| {
@@ -76,6 +76,7 @@ fn an_axis_that_ends_without_contact_leaves_its_samples() {
     let mut recipe = common::built_in();
     let pair = Pair::build(&recipe).unwrap();
     recipe.grid.vertical_m.range = [-1e-4, 0.0];
+    recipe.grid.error_poses = Some(100);
     let [sampled, fitted] = [NodeValues::Sampled, NodeValues::Fitted].map(|values| {
         recipe.grid.node_values = values;
         compile(&recipe, &pair, Some("5x2x2x2".parse().unwrap())).unwrap().image

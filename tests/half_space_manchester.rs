@@ -1,10 +1,8 @@
 //! The half-space and the semi-Hertzian solver against CONTACT's full solution of the Manchester benchmark, A-2.2.
 
-mod common;
-
 use std::f64::consts::PI;
 
-use common::MM;
+use crate::common::{self, MM};
 use flangeway::{Pose, Side};
 use flangeway_host::contact::{Normal, Settings, SlotState};
 use flangeway_host::pair::Pair;

@@ -1,8 +1,6 @@
 //! The models of normal contact against each other over random poses, and whether their forces jump.
 
-mod common;
-
-use common::Draws;
+use crate::common::{self, Draws};
 use flangeway::{Pose, Side};
 use flangeway_host::contact::{Normal, Settings, SlotState};
 use flangeway_host::pair::Pair;

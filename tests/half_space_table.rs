@@ -1,9 +1,8 @@
 //! Half-space tables: an interrupted compilation goes on to the same bytes, and shards make up the same.
 
-mod common;
-
 use std::path::Path;
 
+use crate::common;
 use flangeway::ContactTable;
 use flangeway_host::compile::{Checkpoint, Settled, Shard, Uniform, compile_from, merge};
 use flangeway_host::pair::Pair;
@@ -13,7 +12,7 @@ fn recipe() -> Recipe {
     let text = flangeway_tables::S1002_60E1_40
         .replace("[-0.010, 0.010]", "[-0.004, 0.0]")
         .replace("[0.0, 0.024]", "[0.0, 0.004]")
-        .replace("max_bytes", "node_values = \"sampled\"\nmax_bytes");
+        .replace("max_bytes", "node_values = \"sampled\"\nerror_poses = 300\nmax_bytes");
     let recipe = common::recipe(&format!("{text}\n[solver]\nnormal = \"half-space\"\n"));
     assert!(recipe.grid.node_values == NodeValues::Sampled && recipe.grid.lateral_m.range == [-4e-3, 0.0]);
     recipe

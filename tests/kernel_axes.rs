@@ -1,7 +1,6 @@
 //! Search on uneven axes against brute force.
 
-mod kernel_synthetic;
-
+use crate::kernel_synthetic;
 use flangeway::AxisName;
 use flangeway_host::image::OwnedAxis;
 use proptest::prelude::*;

@@ -1,11 +1,9 @@
 //! The table format: literal bytes, and that no damaged image is taken for a table.
 
-mod kernel_synthetic;
-
+use crate::kernel_synthetic::{self, Synthetic, smallest_axes};
 use flangeway::layout::checksum;
 use flangeway::{ContactTable, TableError};
 use flangeway_host::image::write_image;
-use kernel_synthetic::{Synthetic, smallest_axes};
 
 /// CRC-32C bit by bit, from its definition.
 fn crc32c(bytes: impl Iterator<Item = u8>) -> u32 {

@@ -1,11 +1,9 @@
 //! The made-up table that the gates on machine code use (`tests/gates/three_contacts.fwt`) is what this writes.
 
-mod kernel_synthetic;
-
+use crate::kernel_synthetic::Synthetic;
 use flangeway::{ContactTable, Pose, Side};
-use kernel_synthetic::Synthetic;
 
-/// Set to write the file anew: `WRITE=1 cargo test --test kernel_gates`.
+/// Set to write the file anew: `WRITE=1 cargo test --test checks kernel_gates`.
 const WRITE: &str = "WRITE";
 
 #[test]

@@ -1,11 +1,8 @@
 //! Images damaged on purpose, their checksum made good: the kernel refuses them, or every lookup stays finite.
 
-mod hostile;
-mod kernel_synthetic;
-
+use crate::hostile::{self, NASTY, lookups_stay_finite, with_good_envelope};
+use crate::kernel_synthetic::{Synthetic, smallest_axes, uneven_axes};
 use flangeway::{ContactTable, Pose};
-use hostile::{NASTY, lookups_stay_finite, with_good_envelope};
-use kernel_synthetic::{Synthetic, smallest_axes, uneven_axes};
 use proptest::prelude::*;
 
 /// One piece of damage.

@@ -1,9 +1,7 @@
 //! Lookups in made-up tables whose answers are known.
 
-mod kernel_synthetic;
-
+use crate::kernel_synthetic::{self, Synthetic, rigid_roll, rigid_vertical, value};
 use flangeway::{AxisName, Channel, ContactTable, Coordinates, Flags, Pose, Side, Slot};
-use kernel_synthetic::{Synthetic, rigid_roll, rigid_vertical, value};
 use proptest::prelude::*;
 
 fn image() -> (Synthetic, Vec<u8>) {

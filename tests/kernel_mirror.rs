@@ -1,9 +1,7 @@
 //! Left is the mirror of right, backward yaw the mirror of forward yaw, to the last bit.
 
-mod kernel_synthetic;
-
+use crate::kernel_synthetic::Synthetic;
 use flangeway::{Contact, ContactTable, Contacts, Pose, Side};
-use kernel_synthetic::Synthetic;
 use proptest::prelude::*;
 
 /// Poses in the table and well beyond it.

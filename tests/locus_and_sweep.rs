@@ -1,10 +1,8 @@
 //! The closed-form silhouette against the paper's sweep of sections, over random poses.
 
-mod common;
-
 use std::time::Instant;
 
-use common::{Draws, MM};
+use crate::common::{self, Draws, MM};
 use flangeway::{Pose, Side};
 use flangeway_host::contact::{Body, Method, Peak};
 use flangeway_host::contacts::track_position;

@@ -1,8 +1,6 @@
 //! The direct solver against the Manchester contact benchmark, case A-2.2 (yawed wheelset), as CONTACT solves it.
 
-mod common;
-
-use common::MM;
+use crate::common::{self, MM};
 use flangeway::{Pose, Side};
 use flangeway_host::contacts::{ContactRow, solved};
 use flangeway_host::pair::Pair;

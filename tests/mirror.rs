@@ -1,9 +1,7 @@
 //! Left is the mirror of right, and backward yaw the mirror of forward yaw: in the direct solver, and in the kernel
 //! with a table of real profiles to the last bit.
 
-mod common;
-
-use common::Draws;
+use crate::common::{self, Draws};
 use flangeway::{Contact, ContactTable, Contacts, Pose, Side};
 use flangeway_host::contacts::{ContactRow, solved};
 use flangeway_host::pair::Pair;

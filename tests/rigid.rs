@@ -1,7 +1,6 @@
 //! Rigid contact of the wheelset: both wheels touch, neither is indented, and the mirror images agree.
 
-mod common;
-
+use crate::common;
 use flangeway::{Pose, Side};
 use flangeway_host::pair::Pair;
 use flangeway_host::rigid::two_wheels;

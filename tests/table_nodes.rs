@@ -1,10 +1,8 @@
 //! A table of real profiles, against what was stored in it and against the solver it was sampled from.
 
-mod common;
-
 use std::collections::HashMap;
 
-use common::{Draws, Small};
+use crate::common::{self, Draws, Small};
 use flangeway::{AxisName, CHANNELS, Channel, ContactTable, Coordinates, Pose, SLOTS, Side, Slot};
 use flangeway_host::contact::SlotState;
 

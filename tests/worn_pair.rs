@@ -1,7 +1,6 @@
 //! A measured wheel on a measured rail: what their noise does, and the table that smoothing makes of them.
 
-mod common;
-
+use crate::common;
 use flangeway::{ContactTable, Side};
 use flangeway_host::compile::compile;
 use flangeway_host::pair::Pair;

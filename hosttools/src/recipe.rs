@@ -170,6 +170,9 @@ pub struct Grid {
     /// `"fitted"` to the solver between the nodes, or `"sampled"` at the nodes.
     #[serde(default)]
     pub node_values: NodeValues,
+    /// Random poses at which the errors in the header are measured, 4000 (half-space: 1000) unless given; of a small table
+    /// that is most of the work.
+    pub error_poses: Option<usize>,
 }
 
 /// What a node holds.
@@ -412,6 +415,7 @@ impl Recipe {
                 return Err(Error::field(&self.path, key, format!("[{first}, {last}] does not rise")));
             }
         }
+        within("grid.error_poses", grid.error_poses.unwrap_or(1000) as f64, 100.0, 1e6)?;
         within("grid.max_force_error_p95", grid.max_force_error_p95.unwrap_or(1.0), 1e-6, 1.0)?;
         if grid.yaw_rad.range[0] != 0.0 {
             let message = format!("{} is not 0: backward yaw follows by symmetry", grid.yaw_rad.range[0]);

@@ -1,11 +1,9 @@
 //! Bad input: the program ends with exit status 2 and one line on stderr that names the file, the place in it and the
 //! value, and leaves nothing behind.
 
-mod common;
-
 use std::process::{Output, Stdio};
 
-use common::{Folder, POSES, RECIPE, table};
+use crate::common::{Folder, POSES, RECIPE, table};
 
 /// What is wrong, the files that differ from the good ones, the command, and what its one line must contain.
 struct Case<'a> {
@@ -99,7 +97,7 @@ fn recipes() {
             "unknown section",
             vec![("recipe.toml", format!("{RECIPE}[grids]\n").into())],
             COMPILE,
-            &["recipe.toml:21: ", "unknown field `grids`"],
+            &["recipe.toml:22: ", "unknown field `grids`"],
         ),
         case(
             "missing key",
@@ -143,6 +141,12 @@ fn recipes() {
             &["recipe.toml:17: ", "nodes = \"many\""],
         ),
         case("half a node", recipe("nodes = 21", "nodes = 2.5"), COMPILE, &["recipe.toml:17: ", "nodes"]),
+        case(
+            "too few poses",
+            recipe("error_poses = 500", "error_poses = 50"),
+            COMPILE,
+            &["recipe.toml: grid.error_poses: 50 is not between 100 "],
+        ),
         case("neither gauge nor origin", recipe("gauge_m = 1.435\n", ""), COMPILE, &["recipe.toml: rail: ", "gauge_m"]),
         case(
             "profile that cannot reach the rail",

@@ -1,10 +1,8 @@
 //! Shards and campaigns by the program: the same bytes however the work is divided, and nothing lost or mistaken.
 
-mod common;
-
 use std::path::Path;
 
-use common::{Folder, RECIPE};
+use crate::common::{Folder, RECIPE};
 use flangeway_host::campaign::conicity::RadiusDifference;
 use flangeway_host::campaign::{Manifest, Planned, expand};
 use flangeway_host::pair::Pair;

@@ -1,10 +1,8 @@
 //! The commands on good input: what they print and write, and that they agree with each other.
 
-mod common;
-
 use std::sync::LazyLock;
 
-use common::{Csv, Folder, POSES, RECIPE};
+use crate::common::{self, Csv, Folder, POSES, RECIPE};
 use serde_json::Value;
 
 /// Columns that every file of contacts has.

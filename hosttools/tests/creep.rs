@@ -1,8 +1,6 @@
 //! `flangeway creep`: forces of a file of cases, and clean errors.
 
-mod common;
-
-use common::{Csv, Folder};
+use crate::common::{Csv, Folder};
 
 const HEADER: &str =
     "semi_axis_x_m,semi_axis_y_m,normal_force_n,longitudinal_creepage,lateral_creepage,spin_creepage_per_m";

@@ -1,15 +1,13 @@
 //! `flangeway pil`: exchanges with boards made of the very code that firmware uses, over lines that lose and damage, and
 //! the program's words on bad input.
 
-mod common;
-
 use std::collections::VecDeque;
 use std::io::{Read as _, Write as _};
 use std::net::TcpListener;
 use std::thread;
 use std::time::Duration;
 
-use common::Folder;
+use crate::common::Folder;
 use flangeway::{ContactTable, Pose, layout};
 use flangeway_host::pil::{Came, Line, Report, Settings, pil};
 use flangeway_host::rig::synthetic;

@@ -1,11 +1,9 @@
 //! `flangeway rig`: short runs. Nothing here depends on how long anything takes: on a busy machine periods are missed,
 //! and then they are counted as such.
 
-mod common;
-
 use std::sync::atomic::AtomicU64;
 
-use common::{Folder, POSES};
+use crate::common::{Folder, POSES};
 use flangeway::{ContactTable, Pose};
 use flangeway_host::rig::{Clock, Grid, HIGHEST_RATE, Log, Wheels, run, synthetic};
 use serde_json::Value;

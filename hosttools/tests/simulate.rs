@@ -1,8 +1,6 @@
 //! `flangeway simulate` as a user runs it: a short run of each method, and scenarios that are wrong.
 
-mod common;
-
-use common::{Csv, Folder};
+use crate::common::{Csv, Folder};
 
 /// The committed bogie on the first metres of its curve.
 fn short() -> String {

@@ -1,8 +1,6 @@
 //! A table of real profiles, cut off or with one bit flipped: never taken for a table, by the kernel or the program.
 
-mod common;
-
-use common::{Folder, table};
+use crate::common::{Folder, table};
 use flangeway::{ContactTable, TableError};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;

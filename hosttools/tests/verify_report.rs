@@ -1,8 +1,6 @@
 //! The report of `verify`: complete in itself, every number a number, every sample in exactly one class.
 
-mod common;
-
-use common::{Folder, RECIPE};
+use crate::common::{Folder, RECIPE};
 use serde_json::Value;
 
 const SAMPLES: u64 = 600;

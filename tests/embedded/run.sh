@@ -50,13 +50,13 @@ else
   }
 fi
 
-# build CPU [CARGO ARGUMENTS]: the firmware; the programs are in $targets/CPU/$triple/release.
-flags=
-build() {
-  local cpu=$1
-  shift
-  CARGO_TARGET_DIR="$targets/$cpu" RUSTFLAGS="-C target-cpu=$cpu -C link-arg=-Tlink.x ${linker[*]} $flags" \
-    firmware_cargo build --quiet --release --locked --target $triple "$@"
+# firmware CPU COMMAND [CARGO ARGUMENTS]: cargo's command for a processor. One folder for both, so that what runs on the host
+# (macros, build scripts) is built once; the programs are taken out of it before the next build.
+firmware() {
+  local cpu=$1 command=$2
+  shift 2
+  CARGO_TARGET_DIR="$targets" RUSTFLAGS="-C target-cpu=$cpu -C link-arg=-Tlink.x ${linker[*]}" \
+    firmware_cargo "$command" --quiet --release --locked --target $triple "$@"
 }
 # bytes PROGRAM SECTIONS: their sum.
 bytes() { size -A "$1" | awk -v names="$2" '$1 ~ "^\\.(" names ")$" { sum += $2 } END { print sum + 0 }'; }
@@ -72,24 +72,26 @@ start() {
   board=$!
 }
 stop() { kill "$board" && { wait "$board" || true; board=; }; }
-# await PATTERN FILE: waits until a line says so, for a minute.
+# await PATTERN FILE: waits until a line says so, for five minutes: other programs may run beside.
 await() {
   local i
-  for ((i = 0; i < 600; i++)); do
+  for ((i = 0; i < 3000; i++)); do
     if grep -qE "$1" "$2" 2>/dev/null; then return 0; fi
     sleep 0.1
   done
-  fail "no \"$1\" within a minute: $(cat "$2")"
+  fail "no \"$1\" within five minutes: $(cat "$2")"
 }
 
-CARGO_TARGET_DIR="$here/target/host" cargo build --quiet --release --locked -p flangeway-compare
-compare="$here/target/host/release/compare"
+CARGO_TARGET_DIR="$here/target" cargo build --quiet --release --locked -p flangeway-compare
+compare="$here/target/release/compare"
 "$compare" poses "$work/poses.bin"
 
 for cpu in cortex-m7 cortex-m4; do
-  build $cpu -p flangeway-firmware -p flangeway-smallest -p flangeway-template
-  programs="$targets/$cpu/$triple/release"
-  (cd "$work" && timeout 300 qemu-system-arm -cpu $cpu -machine "$(machine $cpu)" -display none -monitor none -serial none \
+  firmware $cpu build -p flangeway-firmware -p flangeway-smallest -p flangeway-template
+  programs="$work/$cpu"
+  mkdir "$programs"
+  cp "$targets/$triple/release/"{lookups,smallest,template,fixed-step} "$programs/"
+  (cd "$work" && timeout 900 qemu-system-arm -cpu $cpu -machine "$(machine $cpu)" -display none -monitor none -serial none \
     -semihosting-config enable=on,target=native -icount shift=0 -kernel "$programs/lookups" >answers.bin) ||
     fail "$cpu: the firmware did not end well"
   sizes="\"flash_bytes\": $(flash "$programs/smallest"), \"static_bytes\": $(bytes "$programs/smallest" 'data|bss|uninit')"
@@ -128,10 +130,10 @@ for cpu in cortex-m7 cortex-m4; do
 done
 
 # The template with log messages builds too.
-flags="-C link-arg=-Tdefmt.x"
-build cortex-m7 -p flangeway-template --features flangeway-template/defmt --target-dir "$targets/defmt"
-flags=
-template="$targets/cortex-m7/$triple/release/template"
+for program in template fixed-step; do
+  firmware cortex-m7 rustc -p flangeway-template --features defmt --bin $program -- -C link-arg=-Tdefmt.x
+done
+template="$work/cortex-m7/template"
 
 cargo build --quiet --release --locked --manifest-path "$root/Cargo.toml" --bin flangeway
 flangeway="${CARGO_TARGET_DIR:-$root/target}/release/flangeway"

@@ -73,7 +73,8 @@ pub(super) fn cost(recipe: &Recipe) -> f64 {
         NodeValues::Fitted => 16e-6,
         NodeValues::Sampled => 1e-6,
     };
-    let hertz = 3.0 + search + values * bytes;
+    let measuring = 3.0 * grid.error_poses.unwrap_or(4000) as f64 / 4000.0;
+    let hertz = measuring + search + values * bytes;
     match recipe.solver.normal {
         Normal::Hertz => hertz,
         Normal::SemiHertzian => STRIPS * hertz,

@@ -101,7 +101,10 @@ fn finish(recipe: &Recipe, pair: &Pair, table: Assembled, bound: Bound) -> Resul
         Normal::HalfSpace => (HALF_SPACE_SAMPLES, HALF_SPACE_LINES),
         _ => (FIGURE_SAMPLES, FIGURE_LINES),
     };
-    let measured = verify::measure(&view, table.image.len(), pair, samples, lines, FIGURE_SEED);
+    // Fewer or more poses, and as many lines in proportion.
+    let poses = recipe.grid.error_poses.unwrap_or(samples);
+    let lines = (lines * poses / samples).max(1);
+    let measured = verify::measure(&view, table.image.len(), pair, poses, lines, FIGURE_SEED);
     let errors = measured.report.figures();
     let budget = budget::measure(&table, &view, &measured.samples);
     let image = image(recipe, pair, &table.axes, &table.sides, errors)?;

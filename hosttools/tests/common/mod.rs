@@ -30,6 +30,7 @@ lateral_m = { range = [-0.010, 0.010], nodes = 21 }
 yaw_rad = { range = [0.0, 0.024], nodes = 3 }
 vertical_m = { range = [-5.0e-5, 1.5e-4], nodes = 3 }
 roll_rad = { range = [-1.0e-3, 1.0e-3], nodes = 3 }
+error_poses = 500
 "#;
 
 /// Three poses: centred and loaded, shifted and yawed, lifted off the rails.

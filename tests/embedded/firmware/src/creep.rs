@@ -6,7 +6,7 @@ use flangeway::creep::{CreepForces, Creepages, Elasticity, Patch, fastsim, polac
 use flangeway::wheelset::{Motion, Wrench, contact_wrench, creepages};
 use flangeway::{Contact, SLOTS, WheelGeometry};
 
-use crate::counter::{Counter, instructions};
+use crate::counter::Counter;
 
 /// Bytes of a case beside its pose: rates, speed, spin and curvature (`f64`), added creepages and friction (`f32`).
 pub(crate) const CASE: usize = 7 * 8 + 4 * 4;
@@ -81,7 +81,7 @@ pub(crate) fn answer<'a>(
         for (call, place) in [by_polach, by_fastsim].into_iter().zip(place.as_chunks_mut().0) {
             let mut out = Forces::default();
             let ticks = ticks(counter, call, case, contact, &mut out);
-            *place = law_bytes(instructions(ticks - floor), &out);
+            *place = law_bytes(counter.instructions(ticks - floor), &out);
         }
     }
 }

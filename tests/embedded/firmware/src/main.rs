@@ -83,21 +83,23 @@ fn run() -> Option<()> {
     let mut lookup_stack = 0;
     let [table, _] = &tables;
     let mut contacts = Contacts::NONE;
-    let mut without_lookup = |call| ticks(&counter, call, table, Side::Right, &Pose::default(), &mut contacts);
-    let (floor, calibration) = (without_lookup(nothing), without_lookup(thousand));
+    let mut without_lookup = |counter, call| ticks(counter, call, table, Side::Right, &Pose::default(), &mut contacts);
+    let calibration = counter.instructions(without_lookup(&counter, thousand) - without_lookup(&counter, nothing));
+    let counter = counter.for_lookups();
+    let floor = without_lookup(&counter, nothing);
     while poses.read(&mut bytes) {
         let Case { table, side, creep } = parse(&bytes, &tables)?;
         let pose = &creep.motion.pose;
         let mut contacts = Contacts::NONE;
         lookup_stack = lookup_stack.max(stack::used_by(|| lookup(table, side, pose, &mut contacts)));
         let ticks = ticks(&counter, lookup, table, side, pose, &mut contacts);
-        answers.write(&answer(counter::instructions(ticks - floor), &contacts))?;
+        answers.write(&answer(counter.instructions(ticks - floor), &contacts))?;
         let mut forces = [0; creep::ANSWER];
         creep::answer(&counter, &creep, contacts.iter(), &mut forces);
         answers.write(&forces)?;
     }
     // What was seen besides: nops counted, stack of a lookup, of the startup with the check of a table.
-    for number in [counter::instructions(calibration - floor), lookup_stack, startup_stack] {
+    for number in [calibration, lookup_stack, startup_stack] {
         answers.write(&number.to_le_bytes())?;
     }
     Some(())
