@@ -12,8 +12,10 @@ use crate::math::{Four, Quad, Two};
 pub(crate) use crate::simd::Avx2;
 #[cfg(not(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable"))))]
 use crate::{
+    channel::CHANNELS,
     contact::Contacts,
     pose::{Pose, Side},
+    rigid::Coordinates,
     table::ContactTable,
 };
 
@@ -147,6 +149,10 @@ impl Avx2 {
     }
 
     pub(crate) fn contacts_many(self, _: &ContactTable<'_>, _: &[(Side, Pose)], _: &mut [Contacts]) {
+        match self {}
+    }
+
+    pub(crate) fn channels(self, _: &ContactTable<'_>, _: Side, _: &Coordinates) -> [[f32; CHANNELS]; SLOTS] {
         match self {}
     }
 }

@@ -211,10 +211,24 @@ impl<'a> ContactTable<'a> {
     /// The channels at coordinates of the table, `[slot][channel]`, in the units of [`Channel`].
     #[must_use]
     pub fn channels(&self, side: Side, at: &Coordinates) -> [[f32; CHANNELS]; SLOTS] {
+        match self.avx2 {
+            Some(avx2) => avx2.channels(self, side, at),
+            None => self.channels_by(Baseline, side, at),
+        }
+    }
+
+    /// [`ContactTable::channels`] by these instructions, which the caller was compiled for.
+    #[inline(always)]
+    pub(crate) fn channels_by<I: Instructions>(
+        &self,
+        with: I,
+        side: Side,
+        at: &Coordinates,
+    ) -> [[f32; CHANNELS]; SLOTS] {
         let side = self.side(side);
         let plane = side.rigid.plane(at.lateral, at.yaw);
-        let (cell, _) = self.cell(Baseline, &plane, at);
-        Baseline.blend(side.records, &cell, &side.scales).map_or([[0.0; CHANNELS]; SLOTS], |lanes| slots(&lanes))
+        let (cell, _) = self.cell(with, &plane, at);
+        with.blend(side.records, &cell, &side.scales).map_or([[0.0; CHANNELS]; SLOTS], |lanes| slots(&lanes))
     }
 
     /// Asks for the sixteen records of a pose, so that they are in the cache when the lookup comes, while the caller

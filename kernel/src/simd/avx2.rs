@@ -6,11 +6,12 @@ use core::mem::offset_of;
 
 use super::{Four, WideQuad};
 use crate::blend::{Cell, LaneScales, Lanes};
-use crate::channel::SLOTS;
+use crate::channel::{CHANNELS, SLOTS};
 use crate::contact::{Contact, Contacts};
 use crate::instructions::{Eight, Instructions};
 use crate::layout::RECORD;
 use crate::pose::{Pose, Side};
+use crate::rigid::Coordinates;
 use crate::table::ContactTable;
 
 /// That the processor, and the operating system for the vectors' upper halves, has AVX2.
@@ -28,6 +29,11 @@ impl Avx2 {
     pub(crate) fn contacts_into(self, table: &ContactTable<'_>, side: Side, pose: &Pose, contacts: &mut Contacts) {
         // SAFETY: `self` says that there is AVX2. The same below.
         unsafe { contacts_into(self, table, side, pose, contacts) }
+    }
+
+    #[inline(always)]
+    pub(crate) fn channels(self, table: &ContactTable<'_>, side: Side, at: &Coordinates) -> [[f32; CHANNELS]; SLOTS] {
+        unsafe { channels(self, table, side, at) }
     }
 
     #[inline(always)]
@@ -72,6 +78,11 @@ impl Eight for WideEight {
         // The contact begins with eight `f32`, all that the store writes; it asks for no alignment.
         unsafe { _mm256_storeu_ps((&raw mut *contact).cast(), self.0) }
     }
+}
+
+#[target_feature(enable = "avx2")]
+fn channels(avx2: Avx2, table: &ContactTable<'_>, side: Side, at: &Coordinates) -> [[f32; CHANNELS]; SLOTS] {
+    table.channels_by(avx2, side, at)
 }
 
 #[target_feature(enable = "avx2")]
