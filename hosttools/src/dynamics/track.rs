@@ -114,21 +114,8 @@ impl Track {
         let index = self.pieces.partition_point(|piece| piece.start <= distance);
         match index.checked_sub(1).and_then(|before| self.pieces.get(before)) {
             Some(piece) => piece.place(distance, index),
-            None => Place { since: f64::INFINITY, ..Place::default() },
+            None => Place::default(),
         }
-    }
-
-    /// How the track frame turns on the last `way` (m) to a place at a distance (m).
-    #[must_use]
-    pub fn turn(&self, distance: f64, place: &Place, way: f64) -> FrameTurn {
-        let point = &place.point;
-        if way <= place.since {
-            // Θ' = κ
-            let yaw = way * (point.curvature - 0.5 * way * place.curvature_slope);
-            return FrameTurn { roll: way * point.cant_slope, yaw };
-        }
-        let before = self.place(distance - way);
-        FrameTurn { roll: point.cant - before.point.cant, yaw: place.heading - before.heading }
     }
 
     /// How the track at `distance + ahead` (m) lies in the track frame at `distance`: how far it is to the right (m) and
@@ -164,9 +151,17 @@ pub struct Place {
     pub heading: f64,
     /// Change of the curvature over the distance, 1/m².
     curvature_slope: f64,
-    /// Number of the piece, in which curvature and cant are linear, and how far behind the place it begins, m.
+    /// Number of the piece, in which curvature and cant are linear.
     piece: usize,
-    since: f64,
+}
+
+impl Place {
+    /// How the track frame turns from another place to here: by the differences that a co-simulation unit takes, which is
+    /// told cant and heading at each step's end.
+    #[must_use]
+    pub fn turn_from(&self, before: &Self) -> FrameTurn {
+        FrameTurn { roll: self.point.cant - before.point.cant, yaw: self.heading - before.heading }
+    }
 }
 
 impl Piece {
@@ -186,10 +181,9 @@ impl Piece {
         let beyond = distance - self.start - self.section.length;
         let (point, heading) = (self.at(distance), self.heading_at(distance));
         if beyond < 0.0 {
-            let since = distance - self.start;
-            Place { point, heading, curvature_slope: self.curvature_slope, piece, since }
+            Place { point, heading, curvature_slope: self.curvature_slope, piece }
         } else {
-            Place { point, heading, curvature_slope: 0.0, piece: piece + 1, since: beyond }
+            Place { point, heading, curvature_slope: 0.0, piece: piece + 1 }
         }
     }
 
@@ -237,15 +231,16 @@ mod tests {
     }
 
     #[test]
-    fn a_step_turns_by_what_lies_between_its_ends() {
+    fn a_place_is_what_is_told_of_its_distance() {
         let track = curve();
-        for (i, way) in (-20..240).flat_map(|i| [1.5e-3, 0.3, 7.0, 60.0].map(|way| (i, way))) {
-            let to = 0.5 * f64::from(i) + 0.1;
-            let turn = track.turn(to, &track.place(to), way);
-            let (end, begin) = (track.place(to), track.place(to - way));
-            assert!((turn.yaw - (end.heading - begin.heading)).abs() < 1e-14, "{to}, {way}");
-            assert!((turn.roll - (end.point.cant - begin.point.cant)).abs() < 1e-14, "{to}, {way}");
-            assert_eq!((end.point, end.heading), (track.at(to), track.heading(to)));
+        for i in -20..240 {
+            let at = 0.5 * f64::from(i) + 0.1;
+            let (place, before) = (track.place(at), track.place(at - 0.3));
+            assert_eq!((place.point, place.heading), (track.at(at), track.heading(at)));
+            let turn = place.turn_from(&before);
+            // Θ' = κ
+            let mean = 0.5 * (place.point.curvature + before.point.curvature);
+            assert!((turn.yaw - 0.3 * mean).abs() < 1e-4 && (turn.roll - 0.3 * place.point.cant_slope).abs() < 1e-3);
         }
     }
 

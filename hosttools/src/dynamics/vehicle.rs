@@ -131,14 +131,14 @@ impl Vehicle {
     /// One step of `h` seconds.
     pub fn step(&mut self, h: f64, line: &Line<'_>) {
         let Line { track, irregularity, contact, speed } = *line;
-        let (way, to) = (h * speed, self.distance + h * speed);
+        let (from, to) = (self.distance, self.distance + h * speed);
         let here = track.place(to);
         let half_base = self.parameters.frame.map_or(0.0, |frame| 0.5 * frame.wheelbase_m);
         self.distance = to;
         self.time += h;
         let Parameters { wheelset: constants, suspension, carried, frame, led_from_m } = self.parameters;
         if frame.is_some() {
-            self.frame.predict(h, track.turn(to, &here, way));
+            self.frame.predict(h, here.turn_from(&track.place(from)));
         } else {
             self.frame = leading_frame(track, to, led_from_m, speed, self.frame.position[VERTICAL]);
         }
@@ -148,7 +148,7 @@ impl Vehicle {
         for (index, wheelset) in self.wheelsets.iter_mut().enumerate() {
             let ahead = if index == 0 { half_base } else { -half_base };
             let there = track.place(to + ahead);
-            wheelset.body.predict(h, track.turn(to + ahead, &there, way));
+            wheelset.body.predict(h, there.turn_from(&track.place(from + ahead)));
             let seat = Seat::between(track, to, [here, there], [ahead, suspension.below_frame_m], speed);
             let reaction = suspension.reaction(&wheelset.body, &self.frame, &seat, preload);
             on_frame += reaction.frame;

@@ -4,10 +4,10 @@
 //!
 //! | law | what it is | instructions |
 //! | --- | --- | --- |
-//! | [`kalker_linear`] | Kalker's linear theory, no saturation | 230 |
-//! | [`shen_hedrick_elkins`] | the linear resultant bent by a cubic to the bound μN | 276 |
-//! | [`polach`] | closed form, spin included | 495 |
-//! | [`fastsim`] | Kalker's simplified theory on a grid of NX by NY elements, strip theory's tractions | 2,555 on 10 by 10, 6,936 on 20 by 20 |
+//! | [`kalker_linear`] | Kalker's linear theory, no saturation | 151 |
+//! | [`shen_hedrick_elkins`] | the linear resultant bent by a cubic to the bound μN | 190 |
+//! | [`polach`] | closed form, spin included | 368; [`polach_four`] 514 for four contacts |
+//! | [`fastsim`] | Kalker's simplified theory on a grid of NX by NY elements, strip theory's tractions | 2,479 on 10 by 10, 6,835 on 20 by 20 |
 //!
 //! **Signs.** Creepages are the velocity of the wheel's material relative to the rail's, divided by the speed; forces
 //! act on the **wheel**, so they oppose the creepages. The axes of the contact plane are x forward, y along the contact's
@@ -261,8 +261,9 @@ impl<N: Number> Case<N> {
         let (bounds, shears) = (Range::<N>::new(1e-9, 1e12), Range::<f32>::new(1.0, 1e15));
         let (ratios, limit) = (Range::<f32>::new(0.0, 0.5), Range::<N>::new(-CREEPAGE_LIMIT, CREEPAGE_LIMIT));
         let product = friction * normal;
-        // x - x is zero, and NaN for what is not finite.
-        let finite = ((xi - xi) + (eta - eta)) + ((phi - phi) + (friction - friction));
+        // 0 x is zero, and NaN for what is not finite.
+        let zero = N::all(0.0);
+        let finite = (zero * xi + zero * eta) + (zero * phi + zero * friction);
         let beyond = (axes.beyond(a) + axes.beyond(b)) + (bounds.beyond(product) + whole.beyond(normal));
         let beyond_material = shears.beyond(shear_modulus) + ratios.beyond(poisson_ratio);
         let beyond = (beyond + finite) + N::all(beyond_material);
