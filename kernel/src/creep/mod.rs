@@ -6,8 +6,8 @@
 //! | --- | --- | --- |
 //! | [`kalker_linear`] | Kalker's linear theory, no saturation | 151 |
 //! | [`shen_hedrick_elkins`] | the linear resultant bent by a cubic to the bound μN | 190 |
-//! | [`polach`] | closed form, spin included | 368; [`polach_four`] 514 for four contacts |
-//! | [`fastsim`] | Kalker's simplified theory on a grid of NX by NY elements, strip theory's tractions | 2,479 on 10 by 10, 6,835 on 20 by 20 |
+//! | [`polach`] | closed form, spin included | 370; [`polach_four`] 512 for four contacts |
+//! | [`fastsim`] | Kalker's simplified theory on a grid of NX by NY elements, strip theory's tractions | 2,477 on 10 by 10, 6,831 on 20 by 20 |
 //!
 //! **Signs.** Creepages are the velocity of the wheel's material relative to the rail's, divided by the speed; forces
 //! act on the **wheel**, so they oppose the creepages. The axes of the contact plane are x forward, y along the contact's
