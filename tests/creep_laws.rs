@@ -2,8 +2,8 @@
 //! grids.
 
 use flangeway::creep::{
-    Coefficients, CreepForces, Creepages, Elasticity, Friction, Patch, fastsim, kalker_linear, polach, power,
-    shen_hedrick_elkins, wear_index,
+    Coefficients, CreepForces, Creepages, Elasticity, Friction, Patch, fastsim, kalker_linear, polach, polach_four,
+    power, shen_hedrick_elkins, wear_index,
 };
 use proptest::prelude::*;
 
@@ -135,6 +135,29 @@ fn spread() -> impl Iterator<Item = (Patch, Creepages)> {
             (patch(ratio), of([size * turn.cos(), size * turn.sin(), spin]))
         })
     })
+}
+
+#[test]
+fn four_at_once_are_each_alone_to_the_bit() {
+    let mut cases: Vec<_> = spread().collect();
+    // What is none among them, and free places.
+    for (i, bad) in [f32::NAN, f32::INFINITY, 0.0, -1.0, 1e-45, 1e30].into_iter().enumerate() {
+        cases[5 * i].0.normal_force = bad;
+        cases[5 * i + 1].0.semi_axes[i % 2] = bad;
+        cases[5 * i + 2].1.spin = bad;
+    }
+    cases.push(Default::default());
+    let bits = |f: CreepForces| [f.longitudinal, f.lateral, f.spin_moment].map(f32::to_bits);
+    for four in cases.chunks_exact(4) {
+        let (patches, creepages) = ([0, 1, 2, 3].map(|i| four[i].0), [0, 1, 2, 3].map(|i| four[i].1));
+        let friction = [MU, 0.1, f32::NAN, 0.6];
+        let together = polach_four(&patches, &STEEL, &creepages, &friction);
+        for i in 0..4 {
+            let alone = polach(&patches[i], &STEEL, &creepages[i], friction[i]);
+            assert_eq!(bits(together[i]), bits(alone), "{:?}", four[i]);
+        }
+        assert_eq!(together[2], CreepForces::NONE);
+    }
 }
 
 #[test]

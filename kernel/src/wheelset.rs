@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use crate::contact::Contact;
 use crate::creep::{CreepForces, Creepages};
 use crate::displacement::Attitude;
-use crate::math::{Two, at_least, sine_cosine};
+use crate::math::{Two, at_least, sine_cosine, single};
 use crate::pose::{Pose, Side, WheelGeometry};
 
 /// Least speed that creepages are divided by, m/s: below it, creep forces fade into viscous ones, and at rest without
@@ -68,44 +68,142 @@ pub struct Motion {
 /// States that are no numbers, or beyond [`STATE_LIMIT`], give no creepages.
 #[must_use]
 pub fn creepages(geometry: &WheelGeometry, motion: &Motion, contact: &Contact) -> Creepages {
-    let Motion { pose, rates, speed, spin, track_curvature } = *motion;
-    let (sin, cos) = sine_cosine(f64::from(contact.angle));
-    let Attitude { yaw: psi, roll: phi } = Attitude::new(pose.yaw, pose.roll);
-    let point = contact.position.cast::<f64>();
-    let arm = arm(geometry, &pose, contact);
-    // Ω = ψ' z + φ' (cos ψ, sin ψ, 0) - ω e
-    let axle = Vector3::new(-psi.sin * phi.cos, psi.cos * phi.cos, phi.sin);
-    let turn = Vector3::new(rates.roll * psi.cos, rates.roll * psi.sin, rates.yaw) - axle * spin;
-    // v = (0, y', z') + Ω × r + V (1 - κ py, κ px, 0)
-    let track = Vector3::new(1.0 - track_curvature * point.y, track_curvature * point.x, 0.0) * speed;
-    let velocity = Vector3::new(0.0, rates.lateral, rates.vertical) + turn.cross(&arm) + track;
-    let turn_z = turn.z + speed * track_curvature;
-    let per_speed = 1.0 / at_least(speed.abs(), SPEED_FLOOR);
-    let longitudinal = velocity.x * per_speed;
-    let lateral = (velocity.y * cos + velocity.z * sin) * per_speed;
-    let about_normal = (turn_z * cos - turn.y * sin) * per_speed;
-    // By masks, so that no branch is made of it. Angles are clamped before they are used, so they are asked for here.
-    let limit = Two::all(STATE_LIMIT);
-    let inside = |x: f64, y: f64| Two::new([x, y]).abs().within(limit);
-    let valid = inside(speed, spin)
-        .and(inside(rates.lateral, rates.yaw))
-        .and(inside(rates.vertical, rates.roll))
-        .and(inside(track_curvature, f64::from(contact.angle)))
-        .and(inside(pose.lateral, pose.yaw))
-        .and(inside(pose.vertical, pose.roll))
-        .and(inside(point.x, point.y))
-        .and(inside(point.z, 0.0));
-    let ([longitudinal, lateral], [spin, _]) = (
-        Two::new([longitudinal, lateral]).where_all(valid).single(),
-        Two::new([about_normal, 0.0]).where_all(valid).single(),
-    );
-    Creepages { longitudinal, lateral, spin }
+    Footing::new(geometry, &motion.pose, contact).creepages(&Rolling::new(motion))
 }
 
-/// From the wheelset's centre, at (0, y, z - r0), to the contact point, m.
-#[inline(always)]
-fn arm(geometry: &WheelGeometry, pose: &Pose, contact: &Contact) -> Vector3<f64> {
-    contact.position.cast::<f64>() - Vector3::new(0.0, pose.lateral, pose.vertical - geometry.nominal_radius)
+/// A motion as contacts take it: what all contacts of a wheelset have in common. Zeros for a [`Motion`] that is none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rolling {
+    /// Ω, rad/s.
+    turn: Vector3<f64>,
+    /// Ω + V κ z along z, rad/s.
+    turn_z: f64,
+    /// y' and z', m/s; φ' and ψ', rad/s.
+    rates: Rates,
+    /// V, m/s, and V κ, 1/s.
+    speed: f64,
+    track_turn: f64,
+    /// 1 / V, s/m.
+    per_speed: f64,
+}
+
+impl Rolling {
+    /// What a motion's contacts share.
+    #[inline]
+    #[must_use]
+    pub fn new(motion: &Motion) -> Self {
+        let Motion { pose, rates, speed, spin, track_curvature } = *motion;
+        // By masks, so that no branch is made of it. Angles are clamped before they are used, so they are asked for here.
+        let limit = Two::all(STATE_LIMIT);
+        let pairs = [
+            [speed, track_curvature],
+            [rates.lateral, rates.vertical],
+            [rates.roll, rates.yaw],
+            [pose.lateral, pose.vertical],
+            [spin, pose.yaw],
+            [pose.roll, 0.0],
+        ]
+        .map(Two::new);
+        let [first, second, third, fourth, fifth, sixth] = pairs.map(|pair| pair.abs().within(limit));
+        let valid = first.and(second).and(third).and(fourth.and(fifth).and(sixth));
+        let [first, second, third, _, fifth, _] = pairs.map(|pair| pair.where_all(valid).numbers());
+        let ([speed, curvature], [lateral, vertical], [roll, yaw], [spin, _]) = (first, second, third, fifth);
+        let Attitude { yaw: psi, roll: phi } = Attitude::new(pose.yaw, pose.roll);
+        // e = (-sin ψ cos φ, cos ψ cos φ, sin φ)
+        let axle = Vector3::new(-psi.sin * phi.cos, psi.cos * phi.cos, phi.sin);
+        // Ω = ψ' z + φ' (cos ψ, sin ψ, 0) - ω e
+        let turn = Vector3::new(roll * psi.cos, roll * psi.sin, yaw) - axle * spin;
+        let track_turn = speed * curvature;
+        Self {
+            turn,
+            turn_z: turn.z + track_turn,
+            rates: Rates { lateral, yaw, vertical, roll },
+            speed,
+            track_turn,
+            per_speed: 1.0 / at_least(speed.abs(), SPEED_FLOOR),
+        }
+    }
+}
+
+/// A contact as its wheelset stands on it: the arm from the wheelset's centre and the axes of the contact plane, found once
+/// for the contact's creepages, approach and wrench. Zeros for a contact that is no numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Footing {
+    /// r, m.
+    arm: Vector3<f64>,
+    /// y of the contact point; its x is the arm's, m.
+    across: f64,
+    /// sin α and cos α.
+    sin: f64,
+    cos: f64,
+    /// One.
+    along: f64,
+}
+
+impl Footing {
+    /// Arm and axes of a contact of a wheelset at a pose.
+    #[inline]
+    #[must_use]
+    pub fn new(geometry: &WheelGeometry, pose: &Pose, contact: &Contact) -> Self {
+        let (sin, cos) = sine_cosine(f64::from(contact.angle));
+        let point = contact.position.cast::<f64>();
+        // From the wheelset's centre, at (0, y, z - r0), to the contact point.
+        let arm = point - Vector3::new(0.0, pose.lateral, pose.vertical - geometry.nominal_radius);
+        let (place, height, turned) = (Two::new([point.x, point.y]), Two::new([arm.y, arm.z]), Two::new([sin, cos]));
+        let angle = Two::new([f64::from(contact.angle), point.z]);
+        let limit = Two::all(STATE_LIMIT);
+        let inside = |pair: Two| pair.abs().within(limit);
+        let valid = inside(place).and(inside(height)).and(inside(angle));
+        let [[x, y], [arm_y, arm_z], [sin, cos], [along, _]] =
+            [place, height, turned, Two::all(1.0)].map(|pair| pair.where_all(valid).numbers());
+        Self { arm: Vector3::new(x, arm_y, arm_z), across: y, sin, cos, along }
+    }
+
+    /// As [`creepages`].
+    #[inline]
+    #[must_use]
+    pub fn creepages(&self, rolling: &Rolling) -> Creepages {
+        let (arm, turn, y) = (&self.arm, &rolling.turn, self.across);
+        // v = (0, y', z') + Ω × r + V (1 - κ py, κ px, 0)
+        let velocity_x = turn.y * arm.z - turn.z * arm.y + (rolling.speed - rolling.track_turn * y);
+        let velocity_y = turn.z * arm.x - turn.x * arm.z + (rolling.rates.lateral + rolling.track_turn * arm.x);
+        let velocity_z = turn.x * arm.y - turn.y * arm.x + rolling.rates.vertical;
+        let longitudinal = velocity_x * self.along;
+        let lateral = velocity_y * self.cos + velocity_z * self.sin;
+        let about_normal = rolling.turn_z * self.cos - turn.y * self.sin;
+        let per_speed = Two::all(rolling.per_speed);
+        let [longitudinal, lateral] = (Two::new([longitudinal, lateral]) * per_speed).single();
+        let spin = single(about_normal * rolling.per_speed);
+        Creepages { longitudinal, lateral, spin }
+    }
+
+    /// Rate δ' at which wheel and rail approach along their normal, by the rates of the pose alone (rolling has no part in
+    /// it), m/s:
+    ///
+    /// ```text
+    /// δ' = ((0, y', z') + (φ', 0, ψ') × r)·n
+    /// ```
+    #[inline]
+    #[must_use]
+    pub fn approach(&self, rolling: &Rolling) -> f64 {
+        let (arm, Rates { lateral, yaw, vertical, roll }) = (&self.arm, rolling.rates);
+        (vertical + roll * arm.y) * self.cos - (lateral + yaw * arm.x - roll * arm.z) * self.sin
+    }
+
+    /// As [`contact_wrench`], of a normal force (N) and creep forces.
+    #[inline]
+    #[must_use]
+    pub fn wrench(&self, normal_force: f32, creep: &CreepForces) -> Wrench {
+        let (sin, cos) = (self.sin, self.cos);
+        let (normal, lateral) = (f64::from(normal_force), f64::from(creep.lateral));
+        let (longitudinal, spin_moment) = (f64::from(creep.longitudinal), f64::from(creep.spin_moment));
+        // F = -N n + Fx x + Fy t
+        let force =
+            Vector3::new(longitudinal * self.along, normal * sin + lateral * cos, -normal * cos + lateral * sin);
+        // M = r × F + Mz n
+        let moment = self.arm.cross(&force) + Vector3::new(0.0, -sin, cos) * spin_moment;
+        Wrench { force, moment }
+    }
 }
 
 /// Force and moment on a wheelset in the track frame, about the wheelset's centre.
@@ -139,15 +237,7 @@ impl core::iter::Sum for Wrench {
 /// ```
 #[must_use]
 pub fn contact_wrench(geometry: &WheelGeometry, pose: &Pose, contact: &Contact, creep: &CreepForces) -> Wrench {
-    let (sin, cos) = sine_cosine(f64::from(contact.angle));
-    let (normal, lateral) = (f64::from(contact.normal_force), f64::from(creep.lateral));
-    let spin_moment = f64::from(creep.spin_moment);
-    // F = -N n + Fx x + Fy t
-    let force =
-        Vector3::new(f64::from(creep.longitudinal), normal * sin + lateral * cos, -normal * cos + lateral * sin);
-    // M = r × F + Mz n
-    let moment = arm(geometry, pose, contact).cross(&force) + Vector3::new(0.0, -sin, cos) * spin_moment;
-    Wrench { force, moment }
+    Footing::new(geometry, pose, contact).wrench(contact.normal_force, creep)
 }
 
 /// Guiding force and wheel load of one wheel.

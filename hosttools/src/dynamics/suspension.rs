@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::body::{Body, LATERAL, PITCH, ROLL, VERTICAL, Vector5, YAW};
-use super::track::Track;
+use super::track::{Place, Track};
 
 /// One axle box, and where they all are.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
@@ -49,11 +49,23 @@ impl Seat {
     /// speed (m/s).
     #[must_use]
     pub fn at(track: &Track, distance: f64, [ahead, below]: [f64; 2], speed: f64) -> Self {
-        let [offset, yaw] = track.chord(distance, ahead);
-        let here = track.at(distance);
-        let roll = track.at(distance + ahead).cant - here.cant;
+        let places = [distance, distance + ahead].map(|distance| track.place(distance));
+        Self::between(track, distance, places, [ahead, below], speed)
+    }
+
+    /// [`Seat::at`] where the track at the bogie's centre and at the axle is known.
+    #[must_use]
+    pub fn between(
+        track: &Track,
+        distance: f64,
+        [here, there]: [Place; 2],
+        [ahead, below]: [f64; 2],
+        speed: f64,
+    ) -> Self {
+        let [offset, yaw] = track.chord_between(distance, ahead, [&here, &there]);
+        let roll = there.point.cant - here.point.cant;
         // d/dt (offset - a ψf + h φf) = V (β - a κ) - a (ψf' - V κ) + h (φf' - V θ'), with ψf' and φf' absolute
-        Self { ahead, offset, offset_rate: speed * (yaw - below * here.cant_slope), yaw, roll }
+        Self { ahead, offset, offset_rate: speed * (yaw - below * here.point.cant_slope), yaw, roll }
     }
 }
 

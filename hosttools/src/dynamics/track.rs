@@ -5,7 +5,10 @@
 //! right-hand curve; cant is positive where the right rail is the lower one, as it is in a canted right-hand curve.
 //! Between its ends a transition is a clothoid: curvature and cant change linearly with the distance.
 
+use flangeway::Attitude;
 use nalgebra::Vector2;
+
+use super::body::FrameTurn;
 
 /// Standard acceleration of free fall, m/s².
 pub const GRAVITY: f64 = 9.80665;
@@ -41,7 +44,9 @@ impl TrackPoint {
     /// ```
     #[must_use]
     pub fn apparent_gravity(&self, speed: f64) -> Vector2<f64> {
-        let (sin, cos) = (libm::sin(self.cant), libm::cos(self.cant));
+        let roll = Attitude::new(0.0, self.cant).roll;
+        // Steeper than the kernel's series reach.
+        let (sin, cos) = if roll.limited { (libm::sin(self.cant), libm::cos(self.cant)) } else { (roll.sin, roll.cos) };
         let inward = speed * speed * self.curvature;
         Vector2::new(GRAVITY * sin - inward * cos, GRAVITY * cos + inward * sin)
     }
@@ -58,6 +63,9 @@ struct Piece {
     start: f64,
     heading: f64,
     section: Section,
+    /// Change of curvature and cant over the distance, 1/m² and rad/m.
+    curvature_slope: f64,
+    cant_slope: f64,
 }
 
 impl Track {
@@ -67,7 +75,9 @@ impl Track {
         let (mut start, mut heading) = (0.0, 0.0);
         let mut pieces = Vec::with_capacity(sections.len());
         for &section in sections {
-            let piece = Piece { start, heading, section };
+            let slope = |[from, to]: [f64; 2]| (to - from) / section.length;
+            let (curvature_slope, cant_slope) = (slope(section.curvature), slope(section.cant));
+            let piece = Piece { start, heading, section, curvature_slope, cant_slope };
             heading = piece.heading_at(start + section.length);
             start += section.length;
             pieces.push(piece);
@@ -89,19 +99,23 @@ impl Track {
     /// Curvature and cant at a distance from the begin, m.
     #[must_use]
     pub fn at(&self, distance: f64) -> TrackPoint {
-        self.piece(distance).map_or(TrackPoint::default(), |piece| {
-            let Section { length, curvature, cant } = piece.section;
-            let t = ((distance - piece.start) / length).min(1.0);
-            let between = |[from, to]: [f64; 2]| from + t * (to - from);
-            let cant_slope = if t < 1.0 { (cant[1] - cant[0]) / length } else { 0.0 };
-            TrackPoint { curvature: between(curvature), cant: between(cant), cant_slope }
-        })
+        self.piece(distance).map_or(TrackPoint::default(), |piece| piece.at(distance))
     }
 
     /// Heading Θ = ∫ κ ds from the begin to a distance (m), rad; positive turned to the right.
     #[must_use]
     pub fn heading(&self, distance: f64) -> f64 {
         self.piece(distance).map_or(0.0, |piece| piece.heading_at(distance))
+    }
+
+    /// Curvature, cant and heading at a distance from the begin, m.
+    #[must_use]
+    pub fn place(&self, distance: f64) -> Place {
+        let index = self.pieces.partition_point(|piece| piece.start <= distance);
+        match index.checked_sub(1).and_then(|before| self.pieces.get(before)) {
+            Some(piece) => piece.place(distance, index),
+            None => Place::default(),
+        }
     }
 
     /// How the track at `distance + ahead` (m) lies in the track frame at `distance`: how far it is to the right (m) and
@@ -112,20 +126,73 @@ impl Track {
     /// ```
     #[must_use]
     pub fn chord(&self, distance: f64, ahead: f64) -> [f64; 2] {
-        let here = self.heading(distance);
-        let turn = |share: f64| self.heading(distance + share * ahead) - here;
-        let end = turn(1.0);
+        self.chord_between(distance, ahead, [&self.place(distance), &self.place(distance + ahead)])
+    }
+
+    /// [`Track::chord`] where the places at both its ends are known.
+    #[must_use]
+    pub fn chord_between(&self, distance: f64, ahead: f64, [here, there]: [&Place; 2]) -> [f64; 2] {
+        let end = there.heading - here.heading;
+        if here.piece == there.piece {
+            // What Simpson's rule gives exactly where the heading is a parabola: κ a² / 2 + κ' a³ / 6
+            return [ahead * ahead * (0.5 * here.point.curvature + ahead / 6.0 * here.curvature_slope), end];
+        }
+        let turn = |share: f64| self.heading(distance + share * ahead) - here.heading;
         [ahead / 12.0 * (4.0 * turn(0.25) + 2.0 * turn(0.5) + 4.0 * turn(0.75) + end), end]
     }
 }
 
+/// A place on the centre line, with its heading.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Place {
+    /// Curvature and cant.
+    pub point: TrackPoint,
+    /// Heading Θ, rad.
+    pub heading: f64,
+    /// Change of the curvature over the distance, 1/m².
+    curvature_slope: f64,
+    /// Number of the piece, in which curvature and cant are linear.
+    piece: usize,
+}
+
+impl Place {
+    /// How the track frame turns from another place to here: by the differences that a co-simulation unit takes, which is
+    /// told cant and heading at each step's end.
+    #[must_use]
+    pub fn turn_from(&self, before: &Self) -> FrameTurn {
+        FrameTurn { roll: self.point.cant - before.point.cant, yaw: self.heading - before.heading }
+    }
+}
+
 impl Piece {
+    fn at(&self, distance: f64) -> TrackPoint {
+        let Section { length, curvature, cant } = self.section;
+        let x = distance - self.start;
+        if x < length {
+            let (curvature, cant) = (curvature[0] + self.curvature_slope * x, cant[0] + self.cant_slope * x);
+            TrackPoint { curvature, cant, cant_slope: self.cant_slope }
+        } else {
+            TrackPoint { curvature: curvature[1], cant: cant[1], cant_slope: 0.0 }
+        }
+    }
+
+    /// The place at a distance on this piece, of a number, or beyond its end, which is the next piece then.
+    fn place(&self, distance: f64, piece: usize) -> Place {
+        let beyond = distance - self.start - self.section.length;
+        let (point, heading) = (self.at(distance), self.heading_at(distance));
+        if beyond < 0.0 {
+            Place { point, heading, curvature_slope: self.curvature_slope, piece }
+        } else {
+            Place { point, heading, curvature_slope: 0.0, piece: piece + 1 }
+        }
+    }
+
     fn heading_at(&self, distance: f64) -> f64 {
         let Section { length, curvature: [from, to], .. } = self.section;
         let x = distance - self.start;
         let inside = x.min(length);
         // Θ = Θ0 + κ0 x + (κ1 - κ0) x² / 2 L, and at the last curvature beyond the end
-        self.heading + from * inside + 0.5 * (to - from) * inside * inside / length + to * (x - inside)
+        self.heading + from * inside + 0.5 * self.curvature_slope * (inside * inside) + to * (x - inside)
     }
 }
 
@@ -158,6 +225,23 @@ mod tests {
         // From the clothoid's begin: the cubic parabola x³ / 6 R L.
         let [offset, _] = track.chord(20.0, 3.0);
         assert!((offset - 27.0 / (6.0 * 60.0 * 30.0)).abs() < 1e-12);
+        // From the straight into the clothoid, by Simpson's rule.
+        let [offset, turn] = track.chord(19.0, 3.0);
+        assert!((offset - 8.0 / (6.0 * 60.0 * 30.0)).abs() < 2e-5 && (turn - 4.0 / (2.0 * 60.0 * 30.0)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_place_is_what_is_told_of_its_distance() {
+        let track = curve();
+        for i in -20..240 {
+            let at = 0.5 * f64::from(i) + 0.1;
+            let (place, before) = (track.place(at), track.place(at - 0.3));
+            assert_eq!((place.point, place.heading), (track.at(at), track.heading(at)));
+            let turn = place.turn_from(&before);
+            // Θ' = κ
+            let mean = 0.5 * (place.point.curvature + before.point.curvature);
+            assert!((turn.yaw - 0.3 * mean).abs() < 1e-4 && (turn.roll - 0.3 * place.point.cant_slope).abs() < 1e-3);
+        }
     }
 
     #[test]

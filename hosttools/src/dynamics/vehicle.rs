@@ -7,7 +7,7 @@
 //! it on the centre of its frame, which has five degrees of freedom of its own; the boxes' springs are preloaded by the
 //! weight, so that displacements count from rest.
 
-use super::body::{Body, FrameTurn, LATERAL, PITCH, ROLL, VERTICAL, Vector5, YAW};
+use super::body::{Body, LATERAL, PITCH, ROLL, VERTICAL, Vector5, YAW};
 use super::irregularity::Irregularity;
 use super::suspension::{Seat, Suspension};
 use super::track::{GRAVITY, Track};
@@ -132,16 +132,13 @@ impl Vehicle {
     pub fn step(&mut self, h: f64, line: &Line<'_>) {
         let Line { track, irregularity, contact, speed } = *line;
         let (from, to) = (self.distance, self.distance + h * speed);
-        let turn = |ahead: f64| FrameTurn {
-            roll: track.at(to + ahead).cant - track.at(from + ahead).cant,
-            yaw: track.heading(to + ahead) - track.heading(from + ahead),
-        };
+        let here = track.place(to);
         let half_base = self.parameters.frame.map_or(0.0, |frame| 0.5 * frame.wheelbase_m);
         self.distance = to;
         self.time += h;
         let Parameters { wheelset: constants, suspension, carried, frame, led_from_m } = self.parameters;
         if frame.is_some() {
-            self.frame.predict(h, turn(0.0));
+            self.frame.predict(h, here.turn_from(&track.place(from)));
         } else {
             self.frame = leading_frame(track, to, led_from_m, speed, self.frame.position[VERTICAL]);
         }
@@ -150,21 +147,21 @@ impl Vehicle {
         let preload = frame.map_or(0.0, |frame| GRAVITY * (frame.mass_kg + carried.mass_kg) / (2.0 * axles));
         for (index, wheelset) in self.wheelsets.iter_mut().enumerate() {
             let ahead = if index == 0 { half_base } else { -half_base };
-            wheelset.body.predict(h, turn(ahead));
-            let seat = Seat::at(track, to, [ahead, suspension.below_frame_m], speed);
+            let there = track.place(to + ahead);
+            wheelset.body.predict(h, there.turn_from(&track.place(from + ahead)));
+            let seat = Seat::between(track, to, [here, there], [ahead, suspension.below_frame_m], speed);
             let reaction = suspension.reaction(&wheelset.body, &self.frame, &seat, preload);
             on_frame += reaction.frame;
-            let place = track.at(to + ahead);
             let mut loads = reaction.wheelset;
             if frame.is_none() {
-                loads += carried.load(place.apparent_gravity(speed));
+                loads += carried.load(there.point.apparent_gravity(speed));
             }
             let (offsets, slopes) = irregularity.at(to + ahead);
-            let inputs = Inputs { speed, track: place, rails: [offsets, slopes], loads };
+            let inputs = Inputs { speed, track: there.point, rails: [offsets, slopes], loads };
             wheelset.correct(h, &inputs, &constants, contact);
         }
         if let Some(frame) = frame {
-            let gravity = track.at(to).apparent_gravity(speed);
+            let gravity = here.point.apparent_gravity(speed);
             on_frame += carried.load(gravity);
             let [about_x, about_y, about_z] = frame.inertia_kgm2;
             let acceleration = Vector5::new(

@@ -1,9 +1,8 @@
 //! All forces between a wheelset and its rails: contacts of both wheels, creepages, creep forces, wrench, wear.
 
 use flangeway::creep::{self, CreepForces, Creepages, Elasticity, Friction, Patch, wear_index};
-use flangeway::wheelset::{Motion, WheelLoads, Wrench, contact_wrench, creepages};
+use flangeway::wheelset::{Footing, Motion, Rolling, WheelLoads, Wrench};
 use flangeway::{Contact, Contacts, SLOTS, Side};
-use nalgebra::Vector3;
 
 use super::source::Source;
 
@@ -24,13 +23,43 @@ pub enum Law {
 /// Elements of the ellipse in [`Law::Fastsim`], along and across.
 pub const ELEMENTS: usize = 10;
 
-impl Law {
-    fn forces(self, patch: &Patch, elasticity: &Elasticity, creepages: &Creepages, friction: f32) -> CreepForces {
-        match self {
-            Self::Kalker => creep::kalker_linear(patch, elasticity, creepages),
-            Self::ShenHedrickElkins => creep::shen_hedrick_elkins(patch, elasticity, creepages, friction),
-            Self::Polach => creep::polach(patch, elasticity, creepages, friction),
-            Self::Fastsim => creep::fastsim::<ELEMENTS, ELEMENTS>(patch, elasticity, creepages, friction),
+/// Contacts of a wheelset, rounded up to fours.
+const PLACES: usize = (2 * SLOTS).next_multiple_of(4);
+
+/// What a creep law takes of all contacts of a wheelset, and what it gives; places beyond them are empty.
+struct Creep {
+    patches: [Patch; PLACES],
+    creepages: [Creepages; PLACES],
+    friction: [f32; PLACES],
+    forces: [CreepForces; PLACES],
+}
+
+impl Creep {
+    const NONE: Self = Self {
+        patches: [Patch { semi_axes: [0.0; 2], normal_force: 0.0 }; PLACES],
+        creepages: [Creepages { longitudinal: 0.0, lateral: 0.0, spin: 0.0 }; PLACES],
+        friction: [0.0; PLACES],
+        forces: [CreepForces::NONE; PLACES],
+    };
+
+    /// Forces of the first `count` contacts.
+    fn find(&mut self, law: Law, elasticity: &Elasticity, count: usize) {
+        if law == Law::Polach {
+            let fours = self.patches.as_chunks().0.iter().zip(self.creepages.as_chunks().0);
+            let fours = fours.zip(self.friction.as_chunks().0).zip(self.forces.as_chunks_mut::<4>().0);
+            for (((patches, creepages), friction), forces) in fours.take(count.div_ceil(4)) {
+                *forces = creep::polach_four(patches, elasticity, creepages, friction);
+            }
+            return;
+        }
+        let each = self.patches.iter().zip(&self.creepages).zip(&self.friction).zip(&mut self.forces).take(count);
+        for (((patch, creepages), &friction), forces) in each {
+            *forces = match law {
+                Law::Kalker => creep::kalker_linear(patch, elasticity, creepages),
+                Law::ShenHedrickElkins => creep::shen_hedrick_elkins(patch, elasticity, creepages, friction),
+                Law::Polach => creep::polach(patch, elasticity, creepages, friction),
+                Law::Fastsim => creep::fastsim::<ELEMENTS, ELEMENTS>(patch, elasticity, creepages, friction),
+            };
         }
     }
 }
@@ -94,22 +123,35 @@ impl Wheel {
 impl WheelRail<'_> {
     /// Wrench of the rails on the wheelset about its centre, in the frame of the rails; fills in both wheels, right first.
     pub fn forces(&self, motion: &Motion, wheels: &mut [Wheel; 2]) -> Wrench {
-        let mut total = Wrench::default();
-        let mut contacts = Contacts::NONE;
-        for (side, wheel) in Side::ALL.into_iter().zip(wheels) {
-            wheel.touches = [None; SLOTS];
-            self.source.contacts_into(side, &motion.pose, &mut contacts);
-            wheel.flags = contacts.flags.bits();
+        let rolling = Rolling::new(motion);
+        let mut contacts = [const { Contacts::NONE }; 2];
+        let (mut creep, mut count) = (Creep::NONE, 0);
+        let mut footings = [Footing::default(); PLACES];
+        for (side, contacts) in Side::ALL.into_iter().zip(&mut contacts) {
+            self.source.contacts_into(side, &motion.pose, contacts);
             let geometry = self.source.geometry(side);
-            let mut on_wheel = Wrench::default();
             for contact in &mut contacts.list {
-                contact.normal_force *= self.damped(geometry.nominal_radius, motion, contact);
-                let creepages = creepages(geometry, motion, contact);
+                let footing = Footing::new(geometry, &motion.pose, contact);
+                contact.normal_force *= self.damped(footing.approach(&rolling));
+                let creepages = footing.creepages(&rolling);
                 let Creepages { longitudinal: xi, lateral: eta, .. } = creepages;
                 let slip = (xi * xi + eta * eta).sqrt() * motion.speed as f32;
-                let patch = Patch::from(&*contact);
-                let forces = self.law.forces(&patch, &self.elasticity, &creepages, self.friction.at(slip));
-                let wrench = contact_wrench(geometry, &motion.pose, contact, &forces);
+                footings[count] = footing;
+                creep.patches[count] = Patch::from(&*contact);
+                creep.creepages[count] = creepages;
+                creep.friction[count] = self.friction.at(slip);
+                count += 1;
+            }
+        }
+        creep.find(self.law, &self.elasticity, count);
+        let mut found = footings.iter().zip(&creep.creepages).zip(&creep.forces);
+        let mut total = Wrench::default();
+        for ((side, contacts), wheel) in Side::ALL.into_iter().zip(&contacts).zip(wheels) {
+            wheel.touches.iter_mut().for_each(|touch| *touch = None);
+            wheel.flags = contacts.flags.bits();
+            let mut on_wheel = Wrench::default();
+            for (contact, ((footing, &creepages), &forces)) in contacts.iter().zip(&mut found) {
+                let wrench = footing.wrench(contact.normal_force, &forces);
                 on_wheel = on_wheel + wrench;
                 let loads = WheelLoads::new(side, &wrench);
                 let wear = wear_index(&creepages, &forces);
@@ -121,17 +163,8 @@ impl WheelRail<'_> {
         total
     }
 
-    /// What the damping makes of a normal force, of the rates of the pose alone (rolling has no part along the normal):
-    ///
-    /// ```text
-    /// N = C δ^1.5 (1 + χ δ'),   δ' = ((0, y', z') + (φ', 0, ψ') × r)·(0, -sin α, cos α)
-    /// ```
-    fn damped(&self, radius: f64, motion: &Motion, contact: &Contact) -> f32 {
-        let Motion { pose, rates, .. } = motion;
-        let arm = contact.position.cast::<f64>() - Vector3::new(0.0, pose.lateral, pose.vertical - radius);
-        let turn = Vector3::new(rates.roll, 0.0, rates.yaw);
-        let velocity = Vector3::new(0.0, rates.lateral, rates.vertical) + turn.cross(&arm);
-        let approach = -velocity.dot(&contact.normal().cast());
+    /// What the damping makes of a normal force at a rate of approach: N = C δ^1.5 (1 + χ δ'), not less than nothing.
+    fn damped(&self, approach: f64) -> f32 {
         (1.0 + self.damping * approach).clamp(0.0, 2.0) as f32
     }
 }

@@ -1,7 +1,7 @@
 //! Creepages, creep forces, and the wrench of both wheels on the wheelset.
 
 use flangeway::creep::{self, CreepForces, Creepages, Elasticity, Friction, Patch};
-use flangeway::wheelset::{self, WheelLoads, Wrench, contact_wrench, creepages};
+use flangeway::wheelset::{self, Footing, Rolling, WheelLoads, Wrench, creepages};
 use flangeway::{ContactTable, Contacts, Flags, Side};
 
 use crate::pointer::{read, write};
@@ -151,7 +151,7 @@ impl WheelForces {
 fn both(table: &ContactTable<'_>, motion: &wheelset::Motion, law: Law, friction: &Friction) -> WheelsetForces {
     let elasticity = Elasticity::from(&table.header().material);
     let mut wheels = [WheelForces::NONE; 2];
-    let mut total = Wrench::default();
+    let (mut total, rolling) = (Wrench::default(), Rolling::new(motion));
     let mut contacts = [const { Contacts::NONE }; 2];
     table.contacts_many(&Side::ALL.map(|side| (side, motion.pose)), &mut contacts);
     for ((side, contacts), wheel) in Side::ALL.into_iter().zip(&contacts).zip(&mut wheels) {
@@ -159,10 +159,11 @@ fn both(table: &ContactTable<'_>, motion: &wheelset::Motion, law: Law, friction:
         let mut on_wheel = Wrench::default();
         for ((contact, creepage), creep_force) in contacts.iter().zip(&mut wheel.creepages).zip(&mut wheel.creep_forces)
         {
-            let slip = creepages(&geometry, motion, contact);
+            let footing = Footing::new(&geometry, &motion.pose, contact);
+            let slip = footing.creepages(&rolling);
             let coefficient = friction.at(slip_velocity(&slip, motion.speed));
             let force = law(&contact.into(), &elasticity, &slip, coefficient);
-            on_wheel = on_wheel + contact_wrench(&geometry, &motion.pose, contact, &force);
+            on_wheel = on_wheel + footing.wrench(contact.normal_force, &force);
             wheel.wear_index += creep::wear_index(&slip, &force);
             (*creepage, *creep_force) = (slip.into(), force.into());
         }

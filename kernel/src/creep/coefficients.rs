@@ -1,6 +1,6 @@
 //! Kalker's creep coefficients.
 
-use crate::math::{greater, lesser};
+use crate::math::{Four, Number};
 
 /// Kalker's creep coefficients C_ij of an elliptic contact.
 ///
@@ -46,35 +46,88 @@ const TABLE: [[[f32; 3]; 3]; ROWS] = [
     [[10.7, 11.7, 12.9], [10.7, 12.8, 16.0], [12.2, 14.6, 18.0]],
 ];
 
+/// 1/C11, 1/C22, 1/C23 and none, at the rows and columns of the table.
+static FLEXIBILITIES: [[[f32; 4]; 3]; ROWS] = flexibilities();
+
+#[expect(clippy::indexing_slicing, reason = "at compile time")]
+const fn flexibilities() -> [[[f32; 4]; 3]; ROWS] {
+    let mut all = [[[0.0; 4]; 3]; ROWS];
+    let mut i = 0;
+    while i < 9 * ROWS {
+        let (row, column, kind) = (i / 9, i / 3 % 3, i % 3);
+        all[row][column][kind] = 1.0 / TABLE[row][kind][column];
+        i += 1;
+    }
+    all
+}
+
+/// Place in the table's columns.
+#[derive(Clone, Copy)]
+pub(super) struct Column {
+    first: usize,
+    share: Four,
+}
+
+impl Column {
+    #[inline(always)]
+    pub(super) fn of(poisson_ratio: f32) -> Self {
+        let (whole, share) = interval(4.0 * poisson_ratio, 1.0);
+        Self { first: integer(whole).min(1), share: Four::all(share) }
+    }
+
+    /// 1/C11, 1/C22, 1/C23 and none at an interval of rows and the place in it:
+    ///
+    /// ```text
+    /// 1/C = Σ w_ij / C_ij
+    /// ```
+    #[inline(always)]
+    pub(super) fn flexibilities(self, (whole, share): (f32, f32)) -> Four {
+        let row = integer(whole).min(ROWS - 2);
+        let at = |i: usize, j: usize| {
+            Four::load(FLEXIBILITIES.get(row + i).and_then(|row| row.get(self.first + j)).unwrap_or(&[1.0; 4]))
+        };
+        let between = |left: Four, right: Four, share: Four| left + share * (right - left);
+        let (left, right) = (between(at(0, 0), at(0, 1), self.share), between(at(1, 0), at(1, 1), self.share));
+        between(left, right, Four::all(share))
+    }
+}
+
+/// Interval of the table's rows, and the place in it, by a/b and b/a: in steps of the rows 10 a/b - 1, and 19 - 10 b/a
+/// beyond one.
+#[inline(always)]
+pub(super) fn along<N: Number>(ratio: N, inverse: N) -> (N, N) {
+    let ten = |x: N| N::all(10.0) * x.no_more(N::all(1.0));
+    interval((ten(ratio) - ten(inverse)) + N::all(9.0), 17.0)
+}
+
+/// 2^23: the least number above which `f32` are whole.
+const WHOLE: f32 = 8_388_608.0;
+
+/// The interval of a uniform axis, at most the last one and as [`integer`] takes it, and the place in it from 0 to 1. Between
+/// two intervals either will do.
+#[inline(always)]
+fn interval<N: Number>(x: N, last: f32) -> (N, N) {
+    let all = N::all;
+    let x = x.no_less(all(0.0)).no_more(all(last + 1.0));
+    let whole = (x - all(0.5)).no_less(all(0.0)).no_more(all(last)) + all(WHOLE);
+    (whole, x - (whole - all(WHOLE)))
+}
+
+/// The whole number of an interval: the last bits of the sum with [`WHOLE`].
+#[inline(always)]
+fn integer(whole: f32) -> usize {
+    (whole.to_bits() & 31) as usize
+}
+
 impl Coefficients {
     /// Coefficients at the ratio a/b of the semi-axes and at Poisson's ratio.
     #[inline]
     #[must_use]
     pub fn of(ratio: f32, poisson_ratio: f32) -> Self {
-        // In steps of the table's rows: 10 a/b - 1, and 19 - 10 b/a beyond one.
-        let along = if ratio > 1.0 { 19.0 - 10.0 / ratio } else { 10.0 * ratio - 1.0 };
-        let (row, t) = place(along, 17);
-        let (column, s) = place(4.0 * poisson_ratio, 1);
-        // 1/C = Σ w_ij / C_ij
-        let [c11, c22, c23] = [0, 1, 2].map(|kind| {
-            let at = |i: usize, j: usize| {
-                1.0 / TABLE.get(row + i).and_then(|r| r.get(kind)).and_then(|r| r.get(column + j)).unwrap_or(&1.0)
-            };
-            let left = at(0, 0) + s * (at(0, 1) - at(0, 0));
-            let right = at(1, 0) + s * (at(1, 1) - at(1, 0));
-            1.0 / (left + t * (right - left))
-        });
+        let along = along(ratio, 1.0 / ratio);
+        let [c11, c22, c23, _] = (Four::all(1.0) / Column::of(poisson_ratio).flexibilities(along)).numbers();
         Self { c11, c22, c23 }
     }
-}
-
-/// The interval of a uniform axis, at most the last one, and the place in it from 0 to 1.
-#[inline(always)]
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "0 to 17")]
-fn place(x: f32, last: usize) -> (usize, f32) {
-    let x = lesser(greater(x, 0.0), last as f32 + 1.0);
-    let interval = (x as usize).min(last);
-    (interval, x - interval as f32)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use core::f32::consts::{FRAC_1_SQRT_2, PI};
 
-use crate::creep::{Case, CreepForces, Creepages, Elasticity, Patch};
+use crate::creep::{Case, CreepForces, Creepages, Elasticity, Forces, Patch};
 use crate::math::{Four, greater, lesser, sqrt};
 
 /// FASTSIM on NX elements along by NY strips across, its tractions under Hertz's half ellipsoid by strip theory; 10 by 10
@@ -65,9 +65,9 @@ pub fn fastsim<const NX: usize, const NY: usize>(
     if NX == 0 || NY == 0 {
         return CreepForces::NONE;
     }
-    let case = Case::new(patch, elasticity, creepages, friction);
+    let case = Case::of(patch, elasticity, creepages, friction);
     let sums = Tractions::new(&case, Grid::<NX>::new(NY)).sums();
-    sums.within(case.bound).only_if(case.valid)
+    sums.within(case.bound).times(case.valid).into()
 }
 
 /// Largest growth of the traction over the patch's largest bound that is computed; everything slides long before.
@@ -167,24 +167,22 @@ struct Tractions<const NX: usize> {
 
 impl<const NX: usize> Tractions<NX> {
     #[inline(always)]
-    fn new(case: &Case, grid: Grid<NX>) -> Self {
-        let Creepages { longitudinal: xi, lateral: eta, spin: phi } = case.creepages;
-        let c = &case.coefficients;
-        // Linear forces over μ N.
-        let unit = case.unit / case.bound;
-        let turn = case.mean * phi;
-        let psi = unit * c.c23 * turn;
+    fn new(case: &Case<f32>, grid: Grid<NX>) -> Self {
+        // The unit of linear forces over μ N.
+        let Case { xi, eta, turn, stiffness: unit, flexibilities, .. } = *case;
+        let [c11, c22, c23] = flexibilities.map(|flexibility| 1.0 / flexibility);
+        let psi = unit * c23 * turn;
         // What the grid makes of κ U
         let strip = unit * grid.squares / grid.halves;
         // k / k2, from 1/√2 to 1
         let line = xi * xi + eta * eta;
         let share = sqrt(line + turn * turn) / greater(sqrt(line) + turn.abs(), 1e-30);
-        let slip = STRIP * unit * c.c22 * greater(share, FRAC_1_SQRT_2);
+        let slip = STRIP * unit * c22 * greater(share, FRAC_1_SQRT_2);
         Self {
-            adhesion: Growth::new([strip * c.c11 * xi, strip * c.c22 * eta, 2.0 * psi]),
-            slip: Growth::new([slip * xi, slip * eta, slip * (case.a * phi)]),
+            adhesion: Growth::new([strip * c11 * xi, strip * c22 * eta, 2.0 * psi]),
+            slip: Growth::new([slip * xi, slip * eta, slip * (case.slenderness * turn)]),
             spin: Four::all(lesser(greater(psi, -1.0), 1.0)),
-            slenderness: Four::all(case.b / case.a),
+            slenderness: Four::all(case.inverse),
             force: case.bound / (grid.squares * grid.ellipse),
             moment: case.a,
             grid,
@@ -192,7 +190,7 @@ impl<const NX: usize> Tractions<NX> {
     }
 
     #[inline(always)]
-    fn sums(&self) -> CreepForces {
+    fn sums(&self) -> Forces<f32> {
         let all = Four::all;
         let (mut fx, mut fy, mut mz) = (all(0.0), all(0.0), all(0.0));
         for group in 0..self.grid.strips.div_ceil(4) {
@@ -207,11 +205,7 @@ impl<const NX: usize> Tractions<NX> {
             // Mz = Σ (x py - y px)
             mz = mz + half * moment - y * along;
         }
-        CreepForces {
-            longitudinal: self.force * total(fx),
-            lateral: self.force * total(fy),
-            spin_moment: self.force * self.moment * total(mz),
-        }
+        Forces([self.force * total(fx), self.force * total(fy), self.force * self.moment * total(mz)])
     }
 
     /// 1 / e, with 1 + s = e where adhesion ends: |c / e + (0, ψ)| = 1 for the growth c over the strip's bound.

@@ -1,6 +1,6 @@
 //! The coefficient of friction, constant or falling with the speed of slip.
 
-use crate::math::{exp_negative, greater, lesser};
+use crate::math::{greater, rising};
 
 /// A coefficient of friction that may fall with the slip: μ(w) = μ0 ((1 - A) e^(-B w) + A).
 ///
@@ -27,10 +27,8 @@ impl Friction {
     #[inline]
     #[must_use]
     pub fn at(&self, slip: f32) -> f32 {
-        // Beyond 80 nothing is left, and e^-80 is still a normal number. NaN becomes 80.
-        let exponent = lesser(greater(self.decay * slip, 0.0), 80.0);
-        // μ0 ((1 - A) e^(-B w) + A)
-        self.coefficient * ((1.0 - self.limit_ratio) * exp_negative(exponent) + self.limit_ratio)
+        // μ0 ((1 - A) e^(-B w) + A) = μ0 (1 - (1 - A) (1 - e^(-B w)))
+        self.coefficient * (1.0 - (1.0 - self.limit_ratio) * rising(greater(self.decay * slip, 0.0)))
     }
 }
 

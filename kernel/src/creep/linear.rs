@@ -1,7 +1,7 @@
 //! Kalker's linear theory, and its saturation by Shen, Hedrick and Elkins.
 
-use crate::creep::{Case, CreepForces, Creepages, Elasticity, Patch};
-use crate::math::{greater, lesser};
+use crate::creep::{Case, CreepForces, Creepages, Elasticity, Forces, Patch};
+use crate::math::Number;
 
 /// Kalker's linear theory: no saturation, for creepages much smaller than those of sliding.
 ///
@@ -17,8 +17,8 @@ use crate::math::{greater, lesser};
 /// `C33 = 32/(15 π) (b/a)^1.5 C23`.
 #[must_use]
 pub fn kalker_linear(patch: &Patch, elasticity: &Elasticity, creepages: &Creepages) -> CreepForces {
-    let case = Case::new(patch, elasticity, creepages, 1.0);
-    case.linear().only_if(case.valid)
+    let case = Case::of(patch, elasticity, creepages, 1.0);
+    case.linear().times(case.valid).into()
 }
 
 /// Shen, Hedrick and Elkins: Kalker's linear force bent to the bound μN by a cubic, its direction kept.
@@ -38,38 +38,40 @@ pub fn shen_hedrick_elkins(
     creepages: &Creepages,
     friction: f32,
 ) -> CreepForces {
-    let case = Case::new(patch, elasticity, creepages, friction);
+    let case = Case::of(patch, elasticity, creepages, friction);
     let linear = case.linear();
-    linear.times(cubic(linear.magnitude() / case.bound)).within(case.bound).only_if(case.valid)
+    linear.times(cubic(linear.magnitude() / case.bound)).within(case.bound).times(case.valid).into()
 }
 
 /// What the linear resultant is shortened by: 1 - τ/3 + τ²/27 up to τ = 3, where it is 1/3, then 1/τ.
 #[inline(always)]
-pub(super) fn cubic(tau: f32) -> f32 {
-    let bent = lesser(tau, 3.0);
-    (1.0 - bent * (1.0 / 3.0) + bent * bent * (1.0 / 27.0)) * (3.0 / greater(tau, 3.0))
+pub(super) fn cubic<N: Number>(tau: N) -> N {
+    let (all, three) = (N::all, N::all(3.0));
+    let bent = tau.no_more(three);
+    (all(1.0) - bent * all(1.0 / 3.0) + bent * bent * all(1.0 / 27.0)) * (three / tau.no_less(three))
 }
 
-impl Case {
-    /// C33 of the simplified theory.
+impl<N: Number> Case<N> {
+    /// C33 of the simplified theory: 32/(15 π) (b/a)^1.5 C23.
     #[inline(always)]
-    pub(super) fn c33(&self) -> f32 {
-        // 32/(15 π) (b/a)^1.5 C23, with (b/a)^1.5 = (b/a) sqrt(a b) / a
+    pub(super) fn c33(&self) -> N {
         const FACTOR: f32 = 32.0 / (15.0 * core::f32::consts::PI);
-        FACTOR * (self.b / self.a) * (self.mean / self.a) * self.coefficients.c23
+        let [.., f23] = self.flexibilities;
+        N::all(FACTOR) * (self.inverse * self.breadth) / f23
     }
 
     #[inline(always)]
-    fn linear(&self) -> CreepForces {
-        let Creepages { longitudinal: xi, lateral: eta, spin } = self.creepages;
-        let (c, phi) = (&self.coefficients, self.mean * spin);
-        CreepForces {
+    fn linear(&self) -> Forces<N> {
+        let Self { unit, mean, xi, eta, turn, flexibilities, .. } = *self;
+        let [c11, c22, c23] = flexibilities.map(|flexibility| N::all(1.0) / flexibility);
+        let none = N::all(0.0);
+        Forces([
             // Fx = -G a b C11 ξ
-            longitudinal: -self.unit * (c.c11 * xi),
+            none - unit * (c11 * xi),
             // Fy = -G a b (C22 η + sqrt(a b) C23 φ)
-            lateral: -self.unit * (c.c22 * eta + c.c23 * phi),
+            none - unit * (c22 * eta + c23 * turn),
             // Mz = G a b sqrt(a b) (C23 η - sqrt(a b) C33 φ)
-            spin_moment: self.unit * self.mean * (c.c23 * eta - self.c33() * phi),
-        }
+            unit * mean * (c23 * eta - self.c33() * turn),
+        ])
     }
 }

@@ -4,10 +4,10 @@
 //!
 //! | law | what it is | instructions |
 //! | --- | --- | --- |
-//! | [`kalker_linear`] | Kalker's linear theory, no saturation | 230 |
-//! | [`shen_hedrick_elkins`] | the linear resultant bent by a cubic to the bound μN | 276 |
-//! | [`polach`] | closed form, spin included | 495 |
-//! | [`fastsim`] | Kalker's simplified theory on a grid of NX by NY elements, strip theory's tractions | 2,555 on 10 by 10, 6,936 on 20 by 20 |
+//! | [`kalker_linear`] | Kalker's linear theory, no saturation | 151 |
+//! | [`shen_hedrick_elkins`] | the linear resultant bent by a cubic to the bound μN | 190 |
+//! | [`polach`] | closed form, spin included | 370; [`polach_four`] 512 for four contacts |
+//! | [`fastsim`] | Kalker's simplified theory on a grid of NX by NY elements, strip theory's tractions | 2,477 on 10 by 10, 6,831 on 20 by 20 |
 //!
 //! **Signs.** Creepages are the velocity of the wheel's material relative to the rail's, divided by the speed; forces
 //! act on the **wheel**, so they oppose the creepages. The axes of the contact plane are x forward, y along the contact's
@@ -39,11 +39,12 @@ pub use coefficients::Coefficients;
 pub use fastsim::fastsim;
 pub use friction::Friction;
 pub use linear::{kalker_linear, shen_hedrick_elkins};
-pub use polach::polach;
+pub use polach::{polach, polach_four};
 
 use crate::contact::Contact;
 use crate::header::Material;
-use crate::math::{Mask, Two, greater, lesser, single, sqrt};
+use crate::math::{Four, Number, single, sqrt};
+use coefficients::{Column, along};
 
 /// Largest creepage that is computed; spin times the patch's mean semi-axis is held by the same.
 pub const CREEPAGE_LIMIT: f32 = 10.0;
@@ -81,31 +82,49 @@ impl CreepForces {
     pub fn magnitude(&self) -> f32 {
         sqrt(self.longitudinal * self.longitudinal + self.lateral * self.lateral)
     }
+}
 
+/// Longitudinal and lateral forces and spin moments on the way: of one contact, or of four.
+#[derive(Clone, Copy)]
+struct Forces<N>([N; 3]);
+
+impl<N: Number> Forces<N> {
     /// All three times a number.
     #[inline(always)]
-    fn times(self, factor: f32) -> Self {
-        Self {
-            longitudinal: self.longitudinal * factor,
-            lateral: self.lateral * factor,
-            spin_moment: self.spin_moment * factor,
-        }
+    fn times(self, factor: N) -> Self {
+        Self(self.0.map(|force| force * factor))
     }
 
-    /// These forces, or none. By masks, so that no branch is made of it.
+    /// Magnitude of the force in the contact plane.
     #[inline(always)]
-    fn only_if(self, valid: Mask) -> Self {
-        let pair = |x: f32, y: f32| Two::new([f64::from(x), f64::from(y)]).where_all(valid).single();
-        let ([longitudinal, lateral], [spin_moment, _]) =
-            (pair(self.longitudinal, self.lateral), pair(self.spin_moment, 0.0));
-        Self { longitudinal, lateral, spin_moment }
+    fn magnitude(&self) -> N {
+        let [x, y, _] = self.0;
+        (x * x + y * y).root()
     }
 
     /// The force no longer than the bound, the moment shortened with it.
     #[inline(always)]
-    fn within(self, bound: f32) -> Self {
-        let magnitude = self.magnitude();
-        self.times(bound / greater(magnitude, bound))
+    fn within(self, bound: N) -> Self {
+        self.times(bound / self.magnitude().no_less(bound))
+    }
+}
+
+impl From<Forces<f32>> for CreepForces {
+    #[inline(always)]
+    fn from(Forces([longitudinal, lateral, spin_moment]): Forces<f32>) -> Self {
+        Self { longitudinal, lateral, spin_moment }
+    }
+}
+
+impl Forces<Four> {
+    /// Each contact's own.
+    #[inline(always)]
+    fn each(self) -> [CreepForces; 4] {
+        let [x, y, moment] = self.0;
+        Four::transpose([x, y, moment, moment]).map(|of| {
+            let [longitudinal, lateral, spin_moment, _] = of.numbers();
+            CreepForces { longitudinal, lateral, spin_moment }
+        })
     }
 }
 
@@ -127,8 +146,8 @@ pub fn wear_index(creepages: &Creepages, forces: &CreepForces) -> f64 {
     product(creepages.longitudinal, forces.longitudinal) + product(creepages.lateral, forces.lateral)
 }
 
-/// An elliptic contact patch and its normal force.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// An elliptic contact patch and its normal force; by default none, which has no creep forces.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[repr(C)]
 pub struct Patch {
     /// Semi-axes a along x and b across, m.
@@ -166,52 +185,110 @@ impl From<&Material> for Elasticity {
     }
 }
 
-/// A case as the laws take it: every number in its range, and whether it was so.
+/// A case, or four, as the laws take it: every number in its range, and whether it was so.
 #[derive(Clone, Copy)]
-struct Case {
-    /// Semi-axes a and b, m.
-    a: f32,
-    b: f32,
+struct Case<N> {
+    /// Semi-axis a, m.
+    a: N,
+    /// a / b and b / a.
+    ratio: N,
+    inverse: N,
+    /// sqrt(a / b) and sqrt(b / a).
+    slenderness: N,
+    breadth: N,
     /// sqrt(a b), m.
-    mean: f32,
+    mean: N,
     /// G a b, N: the unit of Kalker's linear forces.
-    unit: f32,
+    unit: N,
     /// μ N, N.
-    bound: f32,
-    creepages: Creepages,
-    coefficients: Coefficients,
-    valid: Mask,
+    bound: N,
+    /// G a b / (μ N)
+    stiffness: N,
+    /// ξ, η, and φ sqrt(a b).
+    xi: N,
+    eta: N,
+    turn: N,
+    /// 1/C11, 1/C22, 1/C23.
+    flexibilities: [N; 3],
+    /// 1 for a case, 0 for what is none.
+    valid: N,
 }
 
-impl Case {
+impl Case<f32> {
     #[inline(always)]
-    fn new(patch: &Patch, elasticity: &Elasticity, creepages: &Creepages, friction: f32) -> Self {
+    fn of(patch: &Patch, elasticity: &Elasticity, creepages: &Creepages, friction: f32) -> Self {
         let Patch { semi_axes: [a, b], normal_force } = *patch;
+        let Creepages { longitudinal, lateral, spin } = *creepages;
+        Self::new([a, b, normal_force], elasticity, [longitudinal, lateral, spin], friction, |column, place| {
+            let [f11, f22, f23, _] = column.flexibilities(place).numbers();
+            [f11, f22, f23]
+        })
+    }
+}
+
+impl Case<Four> {
+    #[inline(always)]
+    fn of_four(
+        [p0, p1, p2, p3]: &[Patch; 4],
+        elasticity: &Elasticity,
+        [c0, c1, c2, c3]: &[Creepages; 4],
+        friction: &[f32; 4],
+    ) -> Self {
+        let patch = |of: &Patch| Four::load(&[of.semi_axes[0], of.semi_axes[1], of.normal_force, 0.0]);
+        let [a, b, normal, _] = Four::transpose([patch(p0), patch(p1), patch(p2), patch(p3)]);
+        let creepage = |of: &Creepages| Four::load(&[of.longitudinal, of.lateral, of.spin, 0.0]);
+        let [xi, eta, phi, _] = Four::transpose([creepage(c0), creepage(c1), creepage(c2), creepage(c3)]);
+        Self::new([a, b, normal], elasticity, [xi, eta, phi], Four::load(friction), |column, (whole, share)| {
+            let ([w0, w1, w2, w3], [s0, s1, s2, s3]) = (whole.numbers(), share.numbers());
+            let row = |whole: f32, share: f32| column.flexibilities((whole, share));
+            let [f11, f22, f23, _] = Four::transpose([row(w0, s0), row(w1, s1), row(w2, s2), row(w3, s3)]);
+            [f11, f22, f23]
+        })
+    }
+}
+
+impl<N: Number> Case<N> {
+    #[inline(always)]
+    fn new(
+        [a, b, normal]: [N; 3],
+        elasticity: &Elasticity,
+        [xi, eta, phi]: [N; 3],
+        friction: N,
+        flexibilities: impl FnOnce(Column, (N, N)) -> [N; 3],
+    ) -> Self {
         let Elasticity { shear_modulus, poisson_ratio } = *elasticity;
-        let Creepages { longitudinal: xi, lateral: eta, spin: phi } = *creepages;
-        let (whole, axes) = (Range::new(f32::MIN_POSITIVE, f32::MAX), Range::new(1e-9, 1e3));
-        let product = friction * normal_force;
-        let (bounds, shears, ratios) = (Range::new(1e-9, 1e12), Range::new(1.0, 1e15), Range::new(0.0, 0.5));
-        let valid = Range::hold([axes, axes], [a, b])
-            .and(Range::hold([bounds, shears], [product, shear_modulus]))
-            .and(Range::hold([ratios, whole], [poisson_ratio, normal_force]))
-            .and(finite(xi, eta))
-            .and(finite(phi, friction));
+        let (whole, axes) = (Range::<N>::new(f32::MIN_POSITIVE, f32::MAX), Range::<N>::new(1e-9, 1e3));
+        let (bounds, shears) = (Range::<N>::new(1e-9, 1e12), Range::<f32>::new(1.0, 1e15));
+        let (ratios, limit) = (Range::<f32>::new(0.0, 0.5), Range::<N>::new(-CREEPAGE_LIMIT, CREEPAGE_LIMIT));
+        let product = friction * normal;
+        // 0 x is zero, and NaN for what is not finite.
+        let zero = N::all(0.0);
+        let finite = (zero * xi + zero * eta) + (zero * phi + zero * friction);
+        let beyond = (axes.beyond(a) + axes.beyond(b)) + (bounds.beyond(product) + whole.beyond(normal));
+        let beyond_material = shears.beyond(shear_modulus) + ratios.beyond(poisson_ratio);
+        let beyond = (beyond + finite) + N::all(beyond_material);
+        // Even the least number, twice times this, is more than one; and NaN becomes one.
+        let great = N::all(1e38);
+        let valid = N::all(1.0) - (beyond * great * great).no_more(N::all(1.0));
         let (a, b, bound, g) = (axes.of(a), axes.of(b), bounds.of(product), shears.of(shear_modulus));
-        let mean = sqrt(a * b);
-        let limit = Range::new(-CREEPAGE_LIMIT, CREEPAGE_LIMIT);
+        let (ratio, inverse) = (a / b, b / a);
+        let slenderness = ratio.root();
+        let mean = b * slenderness;
+        let unit = N::all(g) * (a * b);
         Self {
             a,
-            b,
+            ratio,
+            inverse,
+            slenderness,
+            breadth: inverse.root(),
             mean,
-            unit: g * (a * b),
+            unit,
             bound,
-            creepages: Creepages {
-                longitudinal: limit.of(xi),
-                lateral: limit.of(eta),
-                spin: limit.of(phi * mean) / mean,
-            },
-            coefficients: Coefficients::of(a / b, ratios.of(poisson_ratio)),
+            stiffness: unit / bound,
+            xi: limit.of(xi),
+            eta: limit.of(eta),
+            turn: limit.of(phi * mean),
+            flexibilities: flexibilities(Column::of(ratios.of(poisson_ratio)), along(ratio, inverse)),
             valid,
         }
     }
@@ -219,33 +296,26 @@ impl Case {
 
 /// Numbers that are taken.
 #[derive(Clone, Copy)]
-struct Range {
-    low: f32,
-    high: f32,
+struct Range<N> {
+    low: N,
+    high: N,
 }
 
-impl Range {
+impl<N: Number> Range<N> {
     #[inline(always)]
-    const fn new(low: f32, high: f32) -> Self {
-        Self { low, high }
+    fn new(low: f32, high: f32) -> Self {
+        Self { low: N::all(low), high: N::all(high) }
     }
 
     /// The nearest number of the range; an end for NaN.
     #[inline(always)]
-    fn of(self, x: f32) -> f32 {
-        lesser(greater(x, self.low), self.high)
+    fn of(self, x: N) -> N {
+        x.no_less(self.low).no_more(self.high)
     }
 
-    /// Whether two numbers lie in their ranges: nothing is left when what is taken for them is subtracted.
+    /// How far a number is beyond its range: exactly zero inside, NaN for NaN.
     #[inline(always)]
-    fn hold([first, second]: [Self; 2], [x, y]: [f32; 2]) -> Mask {
-        let taken = Two::new([f64::from(first.of(x)), f64::from(second.of(y))]);
-        (Two::new([f64::from(x), f64::from(y)]) - taken).abs().within(Two::all(0.0))
+    fn beyond(self, x: N) -> N {
+        (x - self.of(x)).size()
     }
-}
-
-/// Whether two numbers are finite.
-#[inline(always)]
-fn finite(x: f32, y: f32) -> Mask {
-    Two::new([f64::from(x), f64::from(y)]).abs().within(Two::all(f64::from(f32::MAX)))
 }

@@ -4,7 +4,8 @@
 use std::hint::black_box;
 
 use flangeway::creep::{
-    CreepForces, Creepages, Elasticity, Friction, Patch, fastsim, kalker_linear, polach, shen_hedrick_elkins,
+    CreepForces, Creepages, Elasticity, Friction, Patch, fastsim, kalker_linear, polach, polach_four,
+    shen_hedrick_elkins,
 };
 use flangeway::wheelset::{Motion, contact_wrench, creepages};
 use flangeway::{Contact, Pose, Slot, WheelGeometry};
@@ -19,17 +20,20 @@ enum Law {
     Kalker,
     ShenHedrickElkins,
     Polach,
+    /// Of four contacts at once, of which the last counts.
+    PolachFour,
     Fastsim10,
     Fastsim20,
     /// Creepages of a contact, falling friction, and the wrench.
     Wheelset,
 }
 
-const LAWS: [(&str, Law); 7] = [
+const LAWS: [(&str, Law); 8] = [
     ("floor", Law::Floor),
     ("kalker", Law::Kalker),
     ("shen-hedrick-elkins", Law::ShenHedrickElkins),
     ("polach", Law::Polach),
+    ("polach four", Law::PolachFour),
     ("fastsim 10x10", Law::Fastsim10),
     ("fastsim 20x20", Law::Fastsim20),
     ("creepages and wrench", Law::Wheelset),
@@ -52,6 +56,7 @@ fn counted(law: Law, case: &Case, answer: &mut [f64; 3]) {
         Law::Kalker => kalker_linear(patch, &steel, creepages),
         Law::ShenHedrickElkins => shen_hedrick_elkins(patch, &steel, creepages, *friction),
         Law::Polach => polach(patch, &steel, creepages, *friction),
+        Law::PolachFour => four(case),
         Law::Fastsim10 => fastsim::<10, 10>(patch, &steel, creepages, *friction),
         Law::Fastsim20 => fastsim::<20, 20>(patch, &steel, creepages, *friction),
         Law::Wheelset => wheelset(case),
@@ -61,6 +66,15 @@ fn counted(law: Law, case: &Case, answer: &mut [f64; 3]) {
     }
     *answer = [forces.longitudinal, forces.lateral, forces.spin_moment].map(f64::from);
     black_box(answer);
+}
+
+/// The case beside three others.
+fn four(case: &Case) -> CreepForces {
+    let Case { patch, creepages, friction, .. } = case;
+    let other = Patch { semi_axes: [4e-3, 5e-3], normal_force: 6e4 };
+    let [.., last] =
+        polach_four(&[other, *patch, other, *patch], &Elasticity::STEEL, &[*creepages; 4], &[0.3, 0.4, 0.2, *friction]);
+    last
 }
 
 /// The case's numbers taken for a motion: yaw, a slip of the axle, a contact angle.
