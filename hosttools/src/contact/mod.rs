@@ -353,9 +353,9 @@ impl Surface<'_> {
         rows::cuts(&self.zones, count)
     }
 
-    /// The row at a rail parameter (m) in a zone.
-    pub fn row(&self, zone: &Zone, s: f64) -> Option<Row> {
-        rows::row(self.body, self.ridge, self.centre, zone, s)
+    /// The row of this width (m) at a rail parameter (m) in a zone.
+    pub fn row(&self, zone: &Zone, s: f64, width: f64) -> Option<Row> {
+        rows::row(self.body, self.ridge, self.centre, zone, s, width)
     }
 
     /// Overlaps (m) along a row at multiples of `step` (m): `found` is told the multiple and the overlap, if positive.

@@ -105,7 +105,7 @@ impl Patch {
                 {
                     rows.push(PatchRow { number: previous.number + 1, zone, row: None });
                 }
-                let row = surface.row(place, number as f64 * edges[1]);
+                let row = surface.row(place, number as f64 * edges[1], edges[1]);
                 let index = rows.len();
                 if let Some(row) = &row {
                     surface.along(row, edges[0], |column, overlap| elements.push((index, column, overlap)));
