@@ -232,7 +232,7 @@ impl Column<'_> {
         self.slots(vertical).iter().map(SlotState::normal_force).sum()
     }
 
-    /// Total normal force (N) at a height, by the semi-Hertzian method in place of the half-space: a hundred times as
+    /// Total normal force (N) at a height, by the semi-Hertzian method in place of the half-space: several times as
     /// fast, for searches that need not end at an exact load.
     pub fn estimated_force(&mut self, vertical: f64) -> f64 {
         let normal = match self.body.settings.normal {

@@ -141,10 +141,8 @@ impl Convolution {
             self.row[first_filled..filled].copy_from_slice(&group[first_filled..filled]);
             self.along.forward(&mut self.row, filled);
             for (value, factor) in self.row.iter_mut().zip(spectrum) {
-                for l in 0..LANES {
-                    value.re[l] *= factor[l];
-                    value.im[l] *= factor[l];
-                }
+                value.re.iter_mut().zip(factor).for_each(|(re, factor)| *re *= factor);
+                value.im.iter_mut().zip(factor).for_each(|(im, factor)| *im *= factor);
             }
             self.along.backward(&mut self.row, count);
             group[..count].copy_from_slice(&self.row[..count]);

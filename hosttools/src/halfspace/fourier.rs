@@ -81,7 +81,7 @@ struct Stage {
     turns: Vec<[f32; 2]>,
 }
 
-/// Transforms of one length: 4, 16, ... times any product of 2, 3, 5.
+/// Transforms of one length, a multiple of four without prime factors beyond 5.
 #[derive(Debug, Clone)]
 pub(super) struct Fourier {
     length: usize,
@@ -145,7 +145,7 @@ impl Fourier {
         let [first, later @ ..] = self.stages.as_slice() else { return };
         if first.radix == 4 && filled <= 2 * first.stride {
             data[filled..2 * first.stride].fill(Lanes::ZERO);
-            for (a, b, c, d, w) in first.quarters(data) {
+            for ([a, b, c, d], w) in first.quarters(data) {
                 four_of_two(a, b, c, d, w);
             }
         } else {
@@ -164,7 +164,7 @@ impl Fourier {
             stage.run::<true>(data);
         }
         if first.radix == 4 && wanted <= 2 * first.stride {
-            for (a, b, c, d, w) in first.quarters(data) {
+            for ([a, b, c, d], w) in first.quarters(data) {
                 two_of_four(a, b, c, d, w);
             }
         } else {
@@ -176,14 +176,11 @@ impl Fourier {
 impl Stage {
     /// The numbers of a single block of four that belong together, and their turns.
     #[inline(always)]
-    fn quarters<'a>(
-        &'a self,
-        data: &'a mut [Lanes],
-    ) -> impl Iterator<Item = (&'a mut Lanes, &'a mut Lanes, &'a mut Lanes, &'a mut Lanes, &'a [[f32; 2]; 3])> {
+    fn quarters<'a>(&'a self, data: &'a mut [Lanes]) -> impl Iterator<Item = ([&'a mut Lanes; 4], &'a [[f32; 2]; 3])> {
         let (low, high) = data.split_at_mut(2 * self.stride);
         let ((a, b), (c, d)) = (low.split_at_mut(self.stride), high.split_at_mut(self.stride));
         let parts = a.iter_mut().zip(b).zip(c).zip(d).zip(self.turns.as_chunks().0);
-        parts.map(|((((a, b), c), d), w)| (a, b, c, d, w))
+        parts.map(|((((a, b), c), d), w)| ([a, b, c, d], w))
     }
 
     fn run<const BACK: bool>(&self, data: &mut [Lanes]) {

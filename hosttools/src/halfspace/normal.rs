@@ -113,9 +113,7 @@ fn dot(columns: usize, a: &[f32], b: &[f32]) -> f32 {
         let mut sums = [0.0_f32; 8];
         let rest: f32 = a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum();
         for (a, b) in a.zip(b) {
-            for l in 0..8 {
-                sums[l] += a[l] * b[l];
-            }
+            sums.iter_mut().zip(a.iter().zip(b)).for_each(|(sum, (a, b))| *sum += a * b);
         }
         f64::from(sums.iter().sum::<f32>() + rest)
     };
