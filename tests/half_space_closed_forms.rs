@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use flangeway_host::halfspace::{Convolution, Stencil, TOLERANCE, solve};
+use flangeway_host::halfspace::{self, TOLERANCE};
 use flangeway_host::hertz;
 
 /// A square grid of elements, `edges` (m), that reaches `reach` (m) to each side.
@@ -25,10 +25,9 @@ impl Grid {
 
     /// Force / E* (m²), greatest pressure / E*, area (m²), steps.
     fn solve(&self) -> (f64, f64, f64, usize) {
-        let mut pressure = vec![0.0; self.overlap.len()];
-        let mut convolution = Convolution::new(self.columns, self.rows, self.edges);
-        let (stencil, apply) = (Stencil::new(self.edges), |p: &[f64], u: &mut [f64]| convolution.apply(p, u));
-        let steps = solve(apply, &stencil, self.columns, &self.overlap, &mut pressure, TOLERANCE);
+        let mut grid = halfspace::Grid::new(self.edges, [0, 0], self.columns, vec![0; self.rows], &self.overlap);
+        let steps = grid.solve(&[], TOLERANCE);
+        let pressure: Vec<f64> = grid.pressures().collect();
         let element = self.edges[0] * self.edges[1];
         let area = pressure.iter().filter(|p| **p > 0.0).count() as f64 * element;
         (pressure.iter().sum::<f64>() * element, pressure.iter().copied().fold(0.0, f64::max), area, steps)

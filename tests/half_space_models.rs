@@ -50,14 +50,14 @@ fn strips_and_half_space_agree() {
 }
 
 /// The largest change over 10 nm along lines through random poses, by bisection towards the largest change. Measured:
-/// 0.004 %.
+/// semi-Hertzian 0.012 % (the same along 200 lines), half-space 0.005 %.
 #[test]
 fn forces_do_not_jump() {
     let hertz = Pair::build(&common::manchester_built_in()).unwrap();
     let [semi, half] = [Normal::SemiHertzian, Normal::HalfSpace].map(|normal| model(&hertz, normal));
     let [semi, half] = [(&semi, 96), (&half, 24)].map(|(pair, lines)| largest_change(pair, &poses(&hertz, lines, 3)));
     println!("largest change over 10 nm or nrad: semi-Hertzian {:.3} %, half-space {:.3} %", 1e2 * semi, 1e2 * half);
-    assert!(semi < 1e-2 && half < 1e-3);
+    assert!(semi < 1e-3 && half < 1e-3);
 }
 
 fn largest_change(pair: &Pair, poses: &[Pose]) -> f64 {

@@ -1,4 +1,4 @@
-//! Half-space tables: everything is prepared with the semi-Hertzian method, which is a hundred times as fast and off by
+//! Half-space tables: everything is prepared with the semi-Hertzian method, which is several times as fast and off by
 //! a few percent at most, and what the half-space solver says otherwise is added at the nodes.
 //!
 //! Between the nodes the two differ smoothly: kinks, onsets and changes of contact are the semi-Hertzian table's own,

@@ -46,7 +46,7 @@ const CRC: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISCSI);
 const FIGURE_SAMPLES: usize = 4000;
 const FIGURE_LINES: usize = 200;
 const FIGURE_SEED: u64 = 1;
-/// The same for half-space tables, whose solver takes a hundred times as long.
+/// The same for half-space tables, whose solver takes several times as long.
 const HALF_SPACE_SAMPLES: usize = 1000;
 const HALF_SPACE_LINES: usize = 12;
 

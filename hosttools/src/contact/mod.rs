@@ -232,7 +232,7 @@ impl Column<'_> {
         self.slots(vertical).iter().map(SlotState::normal_force).sum()
     }
 
-    /// Total normal force (N) at a height, by the semi-Hertzian method in place of the half-space: a hundred times as
+    /// Total normal force (N) at a height, by the semi-Hertzian method in place of the half-space: several times as
     /// fast, for searches that need not end at an exact load.
     pub fn estimated_force(&mut self, vertical: f64) -> f64 {
         let normal = match self.body.settings.normal {
@@ -353,9 +353,9 @@ impl Surface<'_> {
         rows::cuts(&self.zones, count)
     }
 
-    /// The row at a rail parameter (m) in a zone.
-    pub fn row(&self, zone: &Zone, s: f64) -> Option<Row> {
-        rows::row(self.body, self.ridge, self.centre, zone, s)
+    /// The row of this width (m) at a rail parameter (m) in a zone.
+    pub fn row(&self, zone: &Zone, s: f64, width: f64) -> Option<Row> {
+        rows::row(self.body, self.ridge, self.centre, zone, s, width)
     }
 
     /// Overlaps (m) along a row at multiples of `step` (m): `found` is told the multiple and the overlap, if positive.

@@ -69,7 +69,8 @@ pub struct Row {
     pub longitudinal: f64,
     /// Greatest overlap in the row (m), along the rail's normal.
     pub overlap: f64,
-    /// Half of the curvature along the track (1/m): the overlap is about w - A (x - x0)².
+    /// Half of the curvature along the track (1/m), the profile's share of it the mean over the row's width: the overlap
+    /// is about w - A (x - x0)².
     pub half_curvature: f64,
     /// Change of the wheel's place along the rail with its parameter.
     speed: f64,
@@ -109,8 +110,8 @@ pub(super) fn zones(body: &Body, ridge: &Ridge<'_>, centre: f64, samples: &[Samp
     zones
 }
 
-/// The row at a rail parameter (m) inside a zone.
-pub(super) fn row(body: &Body, ridge: &Ridge<'_>, centre: f64, zone: &Zone, s: f64) -> Option<Row> {
+/// The row of this width (m) at a rail parameter (m) inside a zone.
+pub(super) fn row(body: &Body, ridge: &Ridge<'_>, centre: f64, zone: &Zone, s: f64, width: f64) -> Option<Row> {
     let rail = body.rail.curve().at(s);
     let place = |t: f64| {
         let wheel = body.wheel.at(t);
@@ -120,9 +121,11 @@ pub(super) fn row(body: &Body, ridge: &Ridge<'_>, centre: f64, zone: &Zone, s: f
     let start = zone.wheel_near(s);
     let (t, speed) = secant(start, 1.0, |t| place(t).map(|(_, _, [along, _])| along))?;
     let (wheel, surface, [_, overlap]) = place(t)?;
-    // Euler: curvature of the wheel along the track.
+    // Euler: curvature of the wheel along the track. Arcs of a profile meet with a step of curvature, which the row must not
+    // feel all at once when its middle crosses it: the mean over the width is how far the profile turns.
     let along2 = ridge.orientation().along(surface.around).powi(2);
-    let curvature = wheel.normal[1] / wheel.radius * along2 + wheel.curvature * (1.0 - along2);
+    let profile = body.wheel.curve().turn(t - 0.5 * width, t + 0.5 * width) / width;
+    let curvature = wheel.normal[1] / wheel.radius * along2 + profile * (1.0 - along2);
     Some(Row {
         rail,
         wheel,

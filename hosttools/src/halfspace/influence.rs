@@ -1,6 +1,7 @@
 //! How a half-space's surface sinks under a uniformly loaded rectangle (Boussinesq; Love 1929; Johnson, Contact
 //! Mechanics, 1985, eq. 3.25).
 
+use std::cell::RefCell;
 use std::f64::consts::PI;
 
 /// The corner function of Love's solution, odd in both arguments:
@@ -35,6 +36,43 @@ pub fn influence(columns: usize, rows: usize, [along, across]: [f64; 2]) -> Vec<
         }
     }
     found
+}
+
+/// Displacements times E* over an element's width, of elements as wide as one and as long as a ratio.
+#[derive(Debug)]
+pub(super) struct Influence {
+    ratio: f64,
+    columns: usize,
+    rows: usize,
+    values: Vec<f32>,
+}
+
+impl Influence {
+    /// The influence on elements `j` rows away.
+    pub(super) fn row(&self, j: usize) -> &[f32] {
+        &self.values[j * self.columns..][..self.columns]
+    }
+}
+
+thread_local! {
+    static KEPT: RefCell<Influence> =
+        const { RefCell::new(Influence { ratio: 0.0, columns: 0, rows: 0, values: Vec::new() }) };
+}
+
+/// Shows the influence over at least so many columns and rows. All grids but the finest and smallest have elements of one
+/// ratio, and F is of the first degree in both edges, so what was computed last is kept.
+pub(super) fn influence_of(ratio: f64, [columns, rows]: [usize; 2], show: impl FnOnce(&Influence)) {
+    KEPT.with_borrow_mut(|kept| {
+        if kept.ratio != ratio {
+            *kept = Influence { ratio, columns: 0, rows: 0, values: Vec::new() };
+        }
+        if kept.columns < columns || kept.rows < rows {
+            let (columns, rows) = (columns.max(kept.columns), rows.max(kept.rows));
+            let values = influence(columns, rows, [ratio, 1.0]).into_iter().map(|value| value as f32).collect();
+            *kept = Influence { ratio, columns, rows, values };
+        }
+        show(kept);
+    });
 }
 
 #[cfg(test)]

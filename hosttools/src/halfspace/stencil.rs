@@ -5,6 +5,7 @@
 //! stand for a convolution, and where the middle outweighs all others together that is positive whatever elements take
 //! part.
 
+use super::convolution::Window;
 use super::influence::influence;
 
 /// Neighbours to each side.
@@ -12,16 +13,16 @@ const REACH: usize = 2;
 const WIDTH: usize = 2 * REACH + 1;
 const COUNT: usize = WIDTH * WIDTH;
 
-/// Pressures times 1 / E* (1/m) of an element's neighbourhood, row by row, that move its middle by a unit.
+/// Pressures of an element's neighbourhood that move its middle by a unit: of the element, of its neighbours one and two
+/// columns away, and the same one and two rows away. Elements are as wide (across) as one and as long as a ratio.
 #[derive(Debug, Clone)]
-pub struct Stencil {
-    values: [f64; COUNT],
+pub(super) struct Stencil {
+    values: [[f32; REACH + 1]; REACH + 1],
 }
 
 impl Stencil {
-    /// For elements with these edges `[along x, across]` (m).
-    pub fn new(edges: [f64; 2]) -> Self {
-        let influence = influence(WIDTH, WIDTH, edges);
+    pub(super) fn new(ratio: f64) -> Self {
+        let influence = influence(WIDTH, WIDTH, [ratio, 1.0]);
         let of =
             |n: usize, m: usize| influence[(n / WIDTH).abs_diff(m / WIDTH) * WIDTH + (n % WIDTH).abs_diff(m % WIDTH)];
         // Conjugate gradients on the small full matrix.
@@ -46,24 +47,38 @@ impl Stencil {
                 *direction = left + squares / earlier * *direction;
             }
         }
-        Self { values }
+        let value = |j: usize, i: usize| values[(REACH + j) * WIDTH + REACH + i] as f32;
+        Self { values: std::array::from_fn(|j| std::array::from_fn(|i| value(j, i))) }
     }
 
-    /// What roughly moves every element of a grid with so many columns by `gap`, into `found`.
-    pub fn apply(&self, columns: usize, gap: &[f64], found: &mut [f64]) {
-        let rows = gap.len() / columns;
-        for (j, found) in found.chunks_exact_mut(columns).enumerate() {
-            found.fill(0.0);
-            for (from, values) in
-                (j.saturating_sub(REACH)..).zip(self.values.chunks_exact(WIDTH).skip(REACH.saturating_sub(j)))
-            {
-                if from >= rows {
-                    break;
+    /// What roughly moves every element of a window by `gap`, into `found`; `gap` is nothing outside of the window.
+    pub(super) fn apply(&self, window: &Window, columns: usize, gap: &[f32], found: &mut [f32]) {
+        let width = window.columns.len();
+        // Sums of the rows at each distance, with so many columns of nothing to each side.
+        let mut sums = [(); REACH + 1].map(|()| vec![0.0_f32; width + 2 * REACH]);
+        let row = |j: usize| &gap[j * columns..][window.columns.clone()];
+        for j in window.rows.clone() {
+            for (away, sums) in sums.iter_mut().enumerate() {
+                let sums = &mut sums[REACH..][..width];
+                let (above, below) = (j.checked_sub(away), j + away);
+                let above = above.filter(|j| *j >= window.rows.start);
+                match (above, below < window.rows.end) {
+                    (Some(above), _) if away == 0 => sums.copy_from_slice(row(above)),
+                    (Some(above), true) => {
+                        sums.iter_mut().zip(row(above)).zip(row(below)).for_each(|((s, a), b)| *s = a + b);
+                    }
+                    (Some(one), false) => sums.copy_from_slice(row(one)),
+                    (None, true) => sums.copy_from_slice(row(below)),
+                    (None, false) => sums.fill(0.0),
                 }
-                let row = &gap[from * columns..][..columns];
-                for (i, &value) in values.iter().enumerate() {
-                    let (to, from) = (REACH.saturating_sub(i).min(columns), i.saturating_sub(REACH).min(columns));
-                    found[to..].iter_mut().zip(&row[from..]).for_each(|(z, r)| *z += value * r);
+            }
+            let found = &mut found[j * columns..][window.columns.clone()];
+            found.fill(0.0);
+            for (sums, [own, next, far]) in sums.iter().zip(&self.values) {
+                let at = |i: usize| &sums[i..][..width];
+                let near = at(1).iter().zip(at(3));
+                for (((z, s), (a, b)), (c, d)) in found.iter_mut().zip(at(2)).zip(near).zip(at(0).iter().zip(at(4))) {
+                    *z += own * s + next * (a + b) + far * (c + d);
                 }
             }
         }
@@ -81,24 +96,31 @@ mod tests {
     #[test]
     fn the_middle_outweighs_all_others() {
         for ratio in [0.1, 0.5, 1.0, 2.0, 10.0] {
-            let Stencil { values } = Stencil::new([2e-4, 2e-4 * ratio]);
-            let others: f64 = values.iter().map(|v| v.abs()).sum::<f64>() - values[COUNT / 2];
-            assert!(others < values[COUNT / 2], "{ratio}: {values:?}");
+            let Stencil { values } = Stencil::new(ratio);
+            let count = |n: usize| if n == 0 { 1.0 } else { 2.0 };
+            let all: f32 = (0..COUNT)
+                .filter(|n| n % WIDTH <= REACH && n / WIDTH <= REACH)
+                .map(|n| (n / WIDTH, n % WIDTH))
+                .map(|(j, i)| count(j) * count(i) * values[j][i].abs())
+                .sum();
+            assert!(all < 2.0 * values[0][0], "{ratio}: {values:?}");
         }
     }
 
     #[test]
     fn a_single_element_gives_the_stencil() {
-        let stencil = Stencil::new([3e-4, 2e-4]);
-        let (columns, rows) = (7, 6);
+        let stencil = Stencil::new(1.5);
+        let (columns, rows) = (9, 8);
+        let window = Window { columns: 1..8, rows: 1..7 };
         let mut gap = vec![0.0; columns * rows];
-        gap[3 * columns + 4] = 1.0;
+        gap[3 * columns + 5] = 1.0;
         let mut found = vec![0.0; gap.len()];
-        stencil.apply(columns, &gap, &mut found);
+        stencil.apply(&window, columns, &gap, &mut found);
         for (n, found) in found.iter().enumerate() {
-            let (i, j) = ((n % columns).abs_diff(4), (n / columns).abs_diff(3));
-            let expected = if i > REACH || j > REACH { 0.0 } else { stencil.values[(REACH + j) * WIDTH + REACH + i] };
-            assert!((found - expected).abs() < 1e-9 * stencil.values[COUNT / 2]);
+            let inside = window.columns.contains(&(n % columns)) && window.rows.contains(&(n / columns));
+            let (i, j) = ((n % columns).abs_diff(5), (n / columns).abs_diff(3));
+            let expected = if i > REACH || j > REACH || !inside { 0.0 } else { stencil.values[j][i] };
+            assert!((found - expected).abs() < 1e-6 * stencil.values[0][0]);
         }
     }
 }

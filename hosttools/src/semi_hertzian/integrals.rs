@@ -12,7 +12,8 @@ pub(super) struct Integrals {
 
 /// Nodes of the table, and the ρ it ends at: beyond, g is π / 2ρ and H constant.
 const NODES: usize = 4096;
-const END: f64 = 64.0;
+const END: f64 = ROOT_END * ROOT_END;
+const ROOT_END: f64 = 8.0;
 
 impl Integrals {
     pub(super) fn table() -> &'static Self {
@@ -21,7 +22,7 @@ impl Integrals {
     }
 
     fn new() -> Self {
-        let step = END.sqrt() / NODES as f64;
+        let step = ROOT_END / NODES as f64;
         // dG = g dρ = 2 v g(v²) dv with v = √ρ, by Simpson's rule.
         let rate = |v: f64| {
             if v == 0.0 {
@@ -52,7 +53,7 @@ impl Integrals {
             let [g, h] = self.values[NODES];
             [g + FRAC_PI_2 * libm::log(size / END), h]
         } else {
-            let place = (size / END).sqrt() * NODES as f64;
+            let place = size.sqrt() * (NODES as f64 / ROOT_END);
             let i = (place as usize).min(NODES - 1);
             let (low, high, share) = (self.values[i], self.values[i + 1], place - i as f64);
             [low[0] + share * (high[0] - low[0]), low[1] + share * (high[1] - low[1])]

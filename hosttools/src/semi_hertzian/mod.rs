@@ -18,7 +18,7 @@
 //! decide. Both are exact for an ellipse. Unlike local rules of the family (STRIPES, Kik-Piotrowski, ANALYN) strips feel
 //! each other, so peaks of one zone and near zones need no rule of their own. Rounds of the two conditions are
 //! accelerated; the force is continuous in the pose because strips are ([`Surface::cuts`]), and because those without
-//! overlap carry nothing.
+//! overlap carry nothing. The wheel's curvature is the mean over a strip's width: a profile's arcs meet with a step of it.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -62,7 +62,7 @@ pub fn loads(surface: &Surface<'_>, contact_modulus: f64) -> Vec<RowLoad> {
     let (mut strips, mut loads) = (Vec::<Strip>::new(), Vec::new());
     for (zone, (place, cuts)) in zones.iter().zip(surface.cuts(STRIPS)).enumerate() {
         strips.extend(cuts.windows(2).filter_map(|cuts| {
-            let row = surface.row(place, 0.5 * (cuts[0] + cuts[1]))?;
+            let row = surface.row(place, 0.5 * (cuts[0] + cuts[1]), cuts[1] - cuts[0])?;
             let carries = row.overlap > 0.0 && row.half_curvature > 0.0 && cuts[1] - cuts[0] > NARROWEST;
             carries.then_some(Strip { row, width: cuts[1] - cuts[0], zone })
         }));
@@ -97,7 +97,7 @@ impl Strips<'_> {
     fn solve(&self) -> Vec<[f64; 2]> {
         let n = self.strips.len();
         let (mut sinking, mut bending) = (vec![0.0; n * n], vec![0.0; n * n]);
-        let weights = self.weights();
+        let (pairs, weights) = (self.pairs(), self.weights());
         let mut carrying = self.guess();
         let mut products = vec![0.0; n];
         let mut state: Vec<f64> =
@@ -106,8 +106,10 @@ impl Strips<'_> {
         let (mut lengths, mut own) = (vec![0.0; n], Vec::new());
         for _ in 0..ROUNDS {
             lengths.iter_mut().zip(&state).for_each(|(a, &ln)| *a = libm::exp(ln));
-            self.assemble(&lengths, &mut sinking, &mut bending);
-            self.meet_overlap(&sinking, &mut carrying, &mut products);
+            self.meet_overlap(&mut sinking, &mut carrying, &mut products, |j, sinking| {
+                let bending = &mut bending[j * n..][..n];
+                self.assemble(&pairs[j * n..][..n], self.strips[j].width, lengths[j], sinking, bending);
+            });
             let acting;
             [own, acting] = self.meet_curvature(&bending, &weights, &products, &lengths);
             let forces: Vec<f64> = products.iter().zip(self.strips).map(|(p, s)| p * s.width).collect();
@@ -136,31 +138,54 @@ impl Strips<'_> {
         self.strips.iter().flat_map(|here| self.strips.iter().map(move |there| of(here, there))).collect()
     }
 
-    /// What unit p a, and unit q, of strip j do in the middle of strip i.
-    fn assemble(&self, lengths: &[f64], sinking: &mut [f64], bending: &mut [f64]) {
+    /// Δs², Δx² and 1 / (π E*), by how much their zones act on each other, of every two strips.
+    fn pairs(&self) -> Vec<[f64; 3]> {
+        let of = |here: &Strip, there: &Strip| {
+            let [first, last] = [here.zone.min(there.zone), here.zone.max(there.zone)];
+            let felt: f64 = self.links[first..last].iter().product();
+            let (across, along) = (here.row.rail.t - there.row.rail.t, here.row.x - there.row.x);
+            [across * across, along * along, felt * self.scale]
+        };
+        self.strips.iter().flat_map(|here| self.strips.iter().map(move |there| of(here, there))).collect()
+    }
+
+    /// What unit p a, and unit q, of one strip do in the middle of every strip; `pairs` are its own.
+    fn assemble(&self, pairs: &[[f64; 3]], width: f64, length: f64, sinking: &mut [f64], bending: &mut [f64]) {
         let table = Integrals::table();
-        let n = self.strips.len();
-        for (i, here) in self.strips.iter().enumerate() {
-            for (j, there) in self.strips.iter().enumerate() {
-                let [first, last] = [here.zone.min(there.zone), here.zone.max(there.zone)];
-                let felt: f64 = self.links[first..last].iter().product();
-                let distance = distance(&here.row, &there.row, lengths[j]);
-                let [outer, inner] = [0.5, -0.5].map(|half| (distance + half * there.width) / lengths[j]);
-                let ([g1, h1], [g0, h0]) = (table.at(outer), table.at(inner));
-                sinking[i * n + j] = felt * self.scale * (g1 - g0);
-                bending[i * n + j] = felt * self.scale * (h1 - h0);
-            }
+        let (square, inverse, half) = (length * length, 1.0 / length, 0.5 * width / length);
+        for ((&[across2, along2, scale], sinking), bending) in pairs.iter().zip(sinking).zip(bending) {
+            let rho = distance(across2, along2, square) * inverse;
+            let ([g1, h1], [g0, h0]) = (table.at(rho + half), table.at(rho - half));
+            *sinking = scale * (g1 - g0);
+            *bending = scale * (h1 - h0);
         }
     }
 
     /// p a ≥ 0 of every strip such that the overlap is met where there is pressure and exceeded nowhere: strips that would
-    /// pull are left out, strips whose overlap remains come in. `carrying` is the first guess, and what is found.
-    fn meet_overlap(&self, sinking: &[f64], carrying: &mut [bool], products: &mut [f64]) {
+    /// pull are left out, strips whose overlap remains come in. `carrying` is the first guess, and what is found;
+    /// `assemble` makes the influence of strips that carry, a row of the matrix for each.
+    fn meet_overlap(
+        &self,
+        sinking: &mut [f64],
+        carrying: &mut [bool],
+        products: &mut [f64],
+        mut assemble: impl FnMut(usize, &mut [f64]),
+    ) {
         let n = self.strips.len();
+        let mut known = vec![false; n];
         for _ in 0..MOST_CHANGES {
             let active: Vec<usize> = (0..n).filter(|&i| carrying[i]).collect();
-            let mut matrix: Vec<f64> =
-                active.iter().flat_map(|&i| active.iter().map(move |&j| sinking[i * n + j])).collect();
+            for &j in &active {
+                if !known[j] {
+                    assemble(j, &mut sinking[j * n..][..n]);
+                    known[j] = true;
+                }
+            }
+            let mut matrix: Vec<f64> = active
+                .iter()
+                .flat_map(|&i| active.iter().map(move |&j| (i, j)))
+                .map(|(i, j)| sinking[j * n + i])
+                .collect();
             let mut right: Vec<f64> = active.iter().map(|&i| self.strips[i].row.overlap).collect();
             eliminate(&mut matrix, &mut right, active.len());
             products.fill(0.0);
@@ -170,7 +195,7 @@ impl Strips<'_> {
                 let stays = if carrying[i] {
                     products[i] >= 0.0
                 } else {
-                    let sunk: f64 = sinking[i * n..][..n].iter().zip(&*products).map(|(k, p)| k * p.max(0.0)).sum();
+                    let sunk: f64 = active.iter().map(|&j| sinking[j * n + i] * products[j].max(0.0)).sum();
                     sunk < (1.0 - TOLERANCE) * strip.row.overlap
                 };
                 changed |= stays != carrying[i];
@@ -189,26 +214,32 @@ impl Strips<'_> {
         let n = self.strips.len();
         let ratios: Vec<f64> = products.iter().zip(lengths).map(|(p, a)| p / (a * a)).collect();
         let carried = |i: usize| {
-            let bent: f64 = bending[i * n..][..n].iter().zip(&ratios).map(|(b, q)| b * q).sum();
+            // Strips that do not carry bend nothing, and nothing is asked of them.
+            let acts = |&j: &usize| products[i] > 0.0 && products[j] > 0.0;
+            let bent: f64 = (0..n).filter(acts).map(|j| bending[j * n + i] * ratios[j]).sum();
             let force = products[i] * self.strips[i].width;
             [1.0, self.strips[i].row.half_curvature, bent, ratios[i]].map(|part| force * part)
         };
         let carried: Vec<[f64; 4]> = (0..n).map(carried).collect();
-        let mean = |i: usize, part: &dyn Fn(usize) -> f64| -> f64 {
-            weights[i * n..][..n].iter().enumerate().map(|(j, w)| w * part(j)).sum()
-        };
         let square = |i: usize| {
-            let [force, wanted, bent, ratio] = [0, 1, 2, 3].map(|part| mean(i, &|j| carried[j][part]));
-            // p a / q, with q = p / a of the neighbourhood, as much larger as the surface is to be bent more.
-            products[i] * force * bent / (ratio * wanted)
+            let mut sums = [0.0; 4];
+            for (w, parts) in weights[i * n..][..n].iter().zip(&carried) {
+                sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += w * part);
+            }
+            let [force, wanted, bent, ratio] = sums;
+            // p a / q, with q = p / a of the neighbourhood, as much larger as the surface is to be bent more; and the force.
+            [products[i] * force * bent / (ratio * wanted), force]
         };
-        let squares: Vec<f64> = (0..n).map(square).collect();
+        let squares: Vec<[f64; 2]> = (0..n).map(square).collect();
+        let weighted: Vec<f64> =
+            carried.iter().zip(&squares).map(|([force, ..], [square, _])| force * square).collect();
         let acting = |i: usize| {
-            let around = mean(i, &|j| carried[j][0] * squares[j]) / mean(i, &|j| carried[j][0]);
+            let [square, force] = squares[i];
+            let around = weights[i * n..][..n].iter().zip(&weighted).map(|(w, part)| w * part).sum::<f64>() / force;
             // The fourth powers leave all but the short ones as they are.
-            (squares[i].powi(2) + (BLUNT * BLUNT * around).powi(2)).sqrt().sqrt()
+            (square.powi(2) + (BLUNT * BLUNT * around).powi(2)).sqrt().sqrt()
         };
-        [squares.iter().map(|square| square.sqrt()).collect(), (0..n).map(acting).collect()]
+        [squares.iter().map(|[square, _]| square.sqrt()).collect(), (0..n).map(acting).collect()]
     }
 }
 
@@ -218,10 +249,10 @@ impl Strips<'_> {
 /// ```text
 /// r² = Δs² + Δx² Δ² / (Δ² + a²),   Δ² = Δs² + Δx²
 /// ```
-fn distance(from: &Row, to: &Row, length: f64) -> f64 {
-    let (across2, along2) = ((from.rail.t - to.rail.t).powi(2), (from.x - to.x).powi(2));
+#[inline]
+fn distance(across2: f64, along2: f64, length2: f64) -> f64 {
     let all2 = across2 + along2;
-    (across2 + along2 * all2 / (all2 + length * length)).sqrt()
+    (across2 + along2 * all2 / (all2 + length2)).sqrt()
 }
 
 /// Gaussian elimination in place; the matrix is nearly symmetric and positive, so no pivot is sought.
