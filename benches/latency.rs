@@ -1,9 +1,11 @@
-//! How long single steps take, for one wheel and for eight: records in the cache (warm), records nowhere in it (cold: a
-//! table of 64 MiB in which no pose comes twice), the caches full of something else (polluted: 64 MiB walked before
-//! every step), and cold but asked for ahead (`ContactTable::contacts_many`; for one wheel `prefetch` a step before).
+//! How long single steps take, for one wheel and for eight: records in the cache (warm), records nowhere in it (cold), the
+//! caches full of something else (polluted: 64 MiB walked before every step), and cold but asked for ahead
+//! (`ContactTable::contacts_many`; for one wheel `prefetch` a step before). With two tables: one of a usual size, its
+//! records flushed from all caches before each cold step, and one of 64 MiB in which no pose comes twice, so that the
+//! pages' addresses are in no cache either, which a rig that locks a usual table in memory does not meet.
 //!
-//! `--svg FILE` draws the histograms, `--json FILE` writes their quantiles and the paired ratios of eight cold wheels to
-//! eight warm ones. On a shared machine the tails are the machine's.
+//! `--svg FILE` draws the histograms, `--json FILE` writes their quantiles and the paired ratios of cold wheels to warm
+//! ones. On a shared machine the tails are the machine's.
 
 mod common;
 #[path = "../tests/kernel_synthetic/mod.rs"]
@@ -30,11 +32,30 @@ fn nodes(first: f32, last: f32, count: u16) -> Vec<f64> {
     (0..count).map(|i| first + (last - first) * f64::from(i) / f64::from(count - 1)).collect()
 }
 
-/// A made-up table of a million records; its rigid map, which nothing can ask for ahead, is as small as a real one's.
-fn big_table() -> ContactTable<'static> {
-    let axes = [nodes(-0.012, 0.0112, 65), nodes(0.0, 0.04, 9), nodes(-0.002, 0.003, 257), nodes(-1e-4, 3e-4, 7)];
-    let image = Synthetic::new(axes, 1).image();
-    ContactTable::new(aligned(&image)).expect("a table")
+/// A made-up table with so many roll offsets, and its records. Its rigid map, which nothing can ask for ahead, is as small
+/// as a real one's.
+fn made_up(roll_offsets: u16) -> (ContactTable<'static>, &'static [u8]) {
+    let roll = nodes(-0.002, 0.003, roll_offsets);
+    let axes = [nodes(-0.012, 0.0112, 65), nodes(0.0, 0.04, 9), roll, nodes(-1e-4, 3e-4, 7)];
+    let image = aligned(&Synthetic::new(axes, 1).image());
+    // The records of the one side are the image's last part.
+    let (_, records) = image.split_at(image.len() - 65 * 9 * usize::from(roll_offsets) * 7 * LINE);
+    (ContactTable::new(image).expect("a table"), records)
+}
+
+/// Bytes of a record, a cache line.
+const LINE: usize = 64;
+
+/// Flushes lines from all caches. Elsewhere than on x86-64 nothing can be flushed, and cold is warm.
+fn flush(lines: &[u8]) {
+    #[cfg(target_arch = "x86_64")]
+    // SAFETY: every x86-64 processor has the instructions; they change nothing that the program can see.
+    #[expect(unsafe_code, reason = "there is no other way to flush a line")]
+    unsafe {
+        use std::arch::x86_64::{_mm_clflush, _mm_mfence};
+        lines.chunks(LINE).for_each(|line| _mm_clflush(line.as_ptr()));
+        _mm_mfence();
+    }
 }
 
 fn looked_up(table: &ContactTable<'_>, wheels: &[(Side, Pose)], contacts: &mut [Contacts]) {
@@ -57,6 +78,7 @@ struct Measured {
 
 fn measure(
     table: &ContactTable<'_>,
+    flushed: &[u8],
     count: usize,
     poses: &mut impl Iterator<Item = Pose>,
 ) -> Result<Measured, Box<dyn Error>> {
@@ -70,7 +92,9 @@ fn measure(
         let (cold, ahead) = (fresh(), fresh());
         looked_up(table, &warm, &mut contacts);
         let of_warm = nanoseconds(|| looked_up(table, black_box(&warm), black_box(&mut contacts)));
+        flush(flushed);
         let of_cold = nanoseconds(|| looked_up(table, black_box(&cold), black_box(&mut contacts)));
+        flush(flushed);
         if count == 1 {
             table.prefetch(ahead[0].0, &ahead[0].1);
             // The caller's other work.
@@ -97,12 +121,12 @@ fn measure(
 }
 
 /// Shares of steps by time, on a logarithmic axis.
-fn draw(path: &str, measured: &[(usize, Measured)]) -> Result<(), Box<dyn Error>> {
-    let area = SVGBackend::new(path, (900, 640)).into_drawing_area();
+fn draw(path: &str, measured: &[(String, Measured)]) -> Result<(), Box<dyn Error>> {
+    let area = SVGBackend::new(path, (900, 1280)).into_drawing_area();
     area.fill(&WHITE)?;
-    for ((wheels, measured), part) in measured.iter().zip(area.split_evenly((measured.len(), 1))) {
+    for ((caption, measured), part) in measured.iter().zip(area.split_evenly((measured.len(), 1))) {
         let mut chart = ChartBuilder::on(&part)
-            .caption(format!("{wheels} wheel{}", if *wheels == 1 { "" } else { "s" }), ("sans-serif", 18))
+            .caption(caption, ("sans-serif", 18))
             .margin(12)
             .margin_right(32)
             .x_label_area_size(40)
@@ -135,25 +159,30 @@ fn draw(path: &str, measured: &[(usize, Measured)]) -> Result<(), Box<dyn Error>
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let table = big_table();
-    let mut poses = random_poses(&table, 2 * STEPS * (WHEELS + 1) + 2 * WHEELS, 5).into_iter();
     let mut all = Vec::new();
     let mut json = serde_json::Map::new();
-    for count in [1, WHEELS] {
-        let measured = measure(&table, count, &mut poses)?;
-        println!("{count} wheel{}: p50, p99, p99.9, largest, ns", if count == 1 { "" } else { "s" });
-        for (name, histogram) in &measured.histograms {
-            let [p50, p99, p999, max] = [0.5, 0.99, 0.999, 1.0].map(|q| histogram.value_at_quantile(q));
-            println!("  {name:22} {p50:7} {p99:7} {p999:7} {max:8}");
-            let key = format!("{name} {count}");
-            json.insert(key, serde_json::json!({ "p50": p50, "p99": p99, "p999": p999, "max": max }));
+    for (name, key, roll_offsets) in [("records flushed", "flushed", 5), ("64 MiB, no pose twice", "unseen", 257)] {
+        let (table, records) = made_up(roll_offsets);
+        let flushed = if key == "flushed" { records } else { &[] };
+        let mut poses = random_poses(&table, 2 * STEPS * (WHEELS + 1) + 2 * WHEELS, 5).into_iter();
+        for count in [1, WHEELS] {
+            let measured = measure(&table, flushed, count, &mut poses)?;
+            let caption = format!("{count} wheel{}, {name}", if count == 1 { "" } else { "s" });
+            println!("{caption}: p50, p99, p99.9, largest, ns");
+            for (mode, histogram) in &measured.histograms {
+                let [p50, p99, p999, max] = [0.5, 0.99, 0.999, 1.0].map(|q| histogram.value_at_quantile(q));
+                println!("  {mode:22} {p50:7} {p99:7} {p999:7} {max:8}");
+                let quantiles = serde_json::json!({ "p50": p50, "p99": p99, "p999": p999, "max": max });
+                json.insert(format!("{mode} {count} {key}"), quantiles);
+            }
+            for (mode, way) in [("cold", 1), ("ahead", 2)] {
+                let ratios = measured.paired.iter().map(|round| round[way] / round[0]);
+                let [low, median, high] = quartiles(ratios.collect());
+                println!("  {mode} over warm, paired: {median:.2} ({low:.2} to {high:.2})");
+                json.insert(format!("ratio_{key}_{mode}_{count}"), median.into());
+            }
+            all.push((caption, measured));
         }
-        for (name, way) in [("cold", 1), ("ahead", 2)] {
-            let [low, median, high] = quartiles(measured.paired.iter().map(|round| round[way] / round[0]).collect());
-            println!("  {name} over warm, paired: {median:.2} ({low:.2} to {high:.2})");
-            json.insert(format!("ratio_{name}_{count}"), median.into());
-        }
-        all.push((count, measured));
     }
     if let Some(path) = common::option("--svg") {
         draw(&path, &all)?;

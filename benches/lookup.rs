@@ -1,6 +1,10 @@
 //! A lookup against the same table read in other ways: `interpn` (27 scalar fields on a regular grid, each interpolated
 //! by itself) and plain safe Rust (an array of records of `f32`, blended by a loop over the corners).
 //!
+//! Two jobs: from table coordinates to the channels, which is all that `interpn` does (`vector` and `interpn`, over
+//! `ContactTable::channels`), and the whole lookup from pose to contacts, to which both others are given the kernel's
+//! coordinates and a plain rebuilding (`vector_lookup` and `interpn_lookup`, over `ContactTable::contacts_into`).
+//!
 //! The same poses in turn in one process; what counts is the ratio, round by round. Each way's accuracy stands beside
 //! its speed: the contacts' force against the same records blended in `f64`. `--json FILE` writes the ratios.
 
@@ -215,8 +219,7 @@ fn main() {
         show(vector),
         show(scalar)
     );
-    println!("time over the lookup's: vector and interpn from pose to contacts;");
-    println!("time over ContactTable::channels': vector_blend and interpn_fields from coordinates to channels");
+    println!("time over ours: from table coordinates to channels; and, as _lookup, from pose to contacts");
     for (name, poses, repeats) in patterns {
         let coordinates: Vec<[f32; 4]> = poses.iter().map(|pose| plain.coordinates(pose)).collect();
         let at: Vec<_> = poses.iter().map(|pose| table.coordinates(Side::Right, pose)).collect();
@@ -263,16 +266,16 @@ fn main() {
         let mut put = |key: &str, way: usize, of: usize| {
             let [low, median, high] = quartiles(times.iter().map(|round| round[way] / round[of]).collect());
             json.insert(format!("ratio_{key}_{name}"), median.into());
-            println!("  {key:14} {median:6.2} ({low:.2} to {high:.2})");
+            println!("  {key:15} {median:6.2} ({low:.2} to {high:.2})");
         };
         println!("{name}, {} poses", poses.len());
-        put("vector", 1, 0);
-        put("interpn", 2, 0);
-        put("vector_blend", 4, 3);
-        put("interpn_fields", 5, 3);
+        put("vector", 4, 3);
+        put("interpn", 5, 3);
+        put("vector_lookup", 1, 0);
+        put("interpn_lookup", 2, 0);
         for (key, way) in [("lookup", 0), ("channels", 3)] {
             let [_, ns, _] = quartiles(times.iter().map(|round| round[way]).collect());
-            println!("  {key:14} {ns:6.0} ns");
+            println!("  {key:15} {ns:6.0} ns");
             json.insert(format!("{key}_ns_{name}"), ns.into());
         }
     }

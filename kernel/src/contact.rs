@@ -87,6 +87,7 @@ pub struct Contacts {
 
 impl Contacts {
     /// The contacts in the order of [`Slot::ALL`].
+    #[inline]
     pub fn iter(&self) -> core::slice::Iter<'_, Contact> {
         self.list.iter()
     }
@@ -108,6 +109,7 @@ impl<'a> IntoIterator for &'a Contacts {
     type Item = &'a Contact;
     type IntoIter = core::slice::Iter<'a, Contact>;
 
+    #[inline]
     fn into_iter(self) -> Self::IntoIter {
         self.iter()
     }

@@ -218,6 +218,7 @@ pub struct Wrench {
 impl core::ops::Add for Wrench {
     type Output = Self;
 
+    #[inline]
     fn add(self, other: Self) -> Self {
         Self { force: self.force + other.force, moment: self.moment + other.moment }
     }

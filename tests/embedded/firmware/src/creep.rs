@@ -3,7 +3,7 @@
 use core::hint::black_box;
 
 use flangeway::creep::{CreepForces, Creepages, Elasticity, Patch, fastsim, polach};
-use flangeway::wheelset::{Motion, Wrench, contact_wrench, creepages};
+use flangeway::wheelset::{Footing, Motion, Rolling, Wrench};
 use flangeway::{Contact, SLOTS, WheelGeometry};
 
 use crate::counter::Counter;
@@ -58,14 +58,15 @@ fn nothing(case: &Case, contact: &Contact, out: &mut Forces) {
 #[inline(always)]
 fn compute(case: &Case, contact: &Contact, out: &mut Forces, law: Law) {
     let Case { geometry, elasticity, motion, added, friction } = case;
-    let of_motion = creepages(geometry, motion, contact);
+    let footing = Footing::new(geometry, &motion.pose, contact);
+    let of_motion = footing.creepages(&Rolling::new(motion));
     let creepages = Creepages {
         longitudinal: of_motion.longitudinal + added.longitudinal,
         lateral: of_motion.lateral + added.lateral,
         spin: of_motion.spin + added.spin,
     };
     let forces = law(&contact.into(), elasticity, &creepages, *friction);
-    let wrench = contact_wrench(geometry, &motion.pose, contact, &forces);
+    let wrench = footing.wrench(contact.normal_force, &forces);
     *out = Forces { creepages: of_motion, forces, wrench };
 }
 
