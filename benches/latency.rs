@@ -86,19 +86,24 @@ fn measure(
     let mut histograms: Vec<Histogram<u64>> = names.iter().map(|_| Histogram::new(3)).collect::<Result<_, _>>()?;
     let mut contacts = vec![Contacts::NONE; count];
     let mut fresh = || -> Vec<(Side, Pose)> { poses.by_ref().take(count).map(|pose| (Side::Right, pose)).collect() };
-    let warm = fresh();
+    let mut warm = fresh();
     let mut paired = Vec::new();
     for _ in 0..STEPS {
-        let (cold, ahead) = (fresh(), fresh());
+        if !flushed.is_empty() {
+            warm = fresh();
+        }
+        // The same wheels where their records are flushed.
+        let (cold, ahead) = if flushed.is_empty() { (fresh(), fresh()) } else { (warm.clone(), warm.clone()) };
         looked_up(table, &warm, &mut contacts);
         let of_warm = nanoseconds(|| looked_up(table, black_box(&warm), black_box(&mut contacts)));
         flush(flushed);
         let of_cold = nanoseconds(|| looked_up(table, black_box(&cold), black_box(&mut contacts)));
         flush(flushed);
+        let other = fresh();
         if count == 1 {
             table.prefetch(ahead[0].0, &ahead[0].1);
             // The caller's other work.
-            (0..200).for_each(|_| looked_up(table, black_box(&warm), black_box(&mut contacts)));
+            (0..200).for_each(|_| looked_up(table, black_box(&other), black_box(&mut contacts)));
         }
         let of_ahead = nanoseconds(|| match count {
             1 => looked_up(table, black_box(&ahead), black_box(&mut contacts)),
@@ -164,7 +169,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, key, roll_offsets) in [("records flushed", "flushed", 5), ("64 MiB, no pose twice", "unseen", 257)] {
         let (table, records) = made_up(roll_offsets);
         let flushed = if key == "flushed" { records } else { &[] };
-        let mut poses = random_poses(&table, 2 * STEPS * (WHEELS + 1) + 2 * WHEELS, 5).into_iter();
+        let mut poses = random_poses(&table, 3 * (STEPS + 1) * (WHEELS + 1), 5).into_iter();
         for count in [1, WHEELS] {
             let measured = measure(&table, flushed, count, &mut poses)?;
             let caption = format!("{count} wheel{}, {name}", if count == 1 { "" } else { "s" });
