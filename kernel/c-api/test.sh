@@ -24,7 +24,8 @@ if [ ${#missing[@]} -gt 0 ]; then
   $sudo apt-get install -y --no-install-recommends "${missing[@]}" >/dev/null
 fi
 if [ "$("$tools/bin/cbindgen" --version 2>/dev/null)" != "cbindgen $cbindgen_version" ]; then
-  cargo install cbindgen --version "$cbindgen_version" --locked --root "$tools" --quiet
+  # Not optimised: it runs for a moment, and compiles in a third of the time.
+  cargo install cbindgen --version "$cbindgen_version" --locked --debug --root "$tools" --quiet
 fi
 if [ ! -x "$tools/python/bin/python3" ] || ! "$tools/python/bin/python3" -c 'import numpy, matplotlib' 2>/dev/null; then
   python3 -m venv "$tools/python"
