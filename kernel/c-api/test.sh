@@ -24,7 +24,7 @@ if [ ${#missing[@]} -gt 0 ]; then
   $sudo apt-get install -y --no-install-recommends "${missing[@]}" >/dev/null
 fi
 if [ "$("$tools/bin/cbindgen" --version 2>/dev/null)" != "cbindgen $cbindgen_version" ]; then
-  # Not optimised: it runs for a moment, and compiles in a third of the time.
+  # Not optimised: it runs for a moment.
   cargo install cbindgen --version "$cbindgen_version" --locked --debug --root "$tools" --quiet
 fi
 if [ ! -x "$tools/python/bin/python3" ] || ! "$tools/python/bin/python3" -c 'import numpy, matplotlib' 2>/dev/null; then
@@ -43,8 +43,9 @@ if cargo tree -e normal,features --locked | grep -E 'feature "(std|alloc|use-std
 fi
 version() { sed -n '/^\[workspace.package\]/,/^$/s/^version = //p' "$1"; }
 [ "$(version Cargo.toml)" = "$(version ../../Cargo.toml)" ]
+cargo build --release --locked --features cost
+cp target/release/libflangeway_c.a "$work/with-cost.a"
 cargo build --workspace --release --locked
-cargo build --release --locked --features cost --target-dir target/cost
 static=target/release/libflangeway_c.a
 if rustup target list --installed 2>/dev/null | grep -q thumbv7em-none-eabihf; then
   cargo rustc --release --locked --target thumbv7em-none-eabihf --lib --crate-type staticlib
@@ -118,7 +119,7 @@ grep -q "not a contact table" "$work/log"
 
 # What C adds, about 75 instructions, is held; time is printed.
 step "cost: instructions by callgrind, and time"
-compile -O2 tests/cost.c target/cost/release/libflangeway_c.a -o "$work/cost"
+compile -O2 tests/cost.c "$work/with-cost.a" -o "$work/cost"
 valgrind --tool=callgrind --callgrind-out-file="$work/callgrind" "$work/cost" $table count 2>/dev/null
 callgrind_annotate --inclusive=yes "$work/callgrind" 2>/dev/null | tr -d , | awk '
   /cost_c_loop/ && !c { c = $1 } /cost_rust_loop/ && !rust { rust = $1 }
