@@ -6,6 +6,8 @@ mod campaign;
 mod commands;
 mod common;
 mod creep;
+#[path = "../../tests/common/modules.rs"]
+mod modules;
 mod pil;
 mod profile_readers;
 mod profiles;
@@ -15,14 +17,7 @@ mod simulate;
 mod truncation;
 mod verify_report;
 
-/// A file that is named nowhere would never be compiled.
 #[test]
 fn every_file_is_among_the_modules() {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
-    for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
-        let module = path.file_stem().unwrap().to_str().unwrap();
-        let is_one = path.join("mod.rs").exists() || path.extension().is_some_and(|e| e == "rs") && module != "main";
-        let named = include_str!("main.rs").lines().any(|line| line == format!("mod {module};"));
-        assert_eq!(named, is_one, "{}", path.display());
-    }
+    modules::name_every_file(env!("CARGO_MANIFEST_DIR"), include_str!("main.rs"));
 }

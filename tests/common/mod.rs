@@ -1,6 +1,8 @@
 //! Pairs, recipes and random poses that several tests share.
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part of this")]
 
+pub mod modules;
+
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 

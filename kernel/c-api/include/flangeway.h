@@ -338,7 +338,7 @@ int32_t flangeway_contacts(const flangeway_table *table,
                            const flangeway_pose *pose,
                            flangeway_wheel_contacts *contacts);
 
-// Contacts of `count` wheels, as `flangeway_contacts` gives them, the records of up to eight asked for together.
+// Contacts of `count` wheels, as `flangeway_contacts` gives them, records asked for ahead of the wheel in hand.
 // `capacity` is how many wheels' contacts fit at `contacts`. If a pose is no number, the others are answered
 // all the same and FLANGEWAY_STATUS_NOT_A_NUMBER returned; if a side is none, nothing is written.
 int32_t flangeway_contacts_many(const flangeway_table *table,

@@ -47,7 +47,7 @@ pub unsafe extern "C" fn flangeway_contacts(
     Status::of(look())
 }
 
-/// Contacts of `count` wheels, as `flangeway_contacts` gives them, the records of up to eight asked for together.
+/// Contacts of `count` wheels, as `flangeway_contacts` gives them, records asked for ahead of the wheel in hand.
 /// `capacity` is how many wheels' contacts fit at `contacts`. If a pose is no number, the others are answered
 /// all the same and FLANGEWAY_STATUS_NOT_A_NUMBER returned; if a side is none, nothing is written.
 #[unsafe(no_mangle)]

@@ -185,12 +185,12 @@ const _: () = assert!(FINE[0] && FINE[1] && !FINE[2] && !FINE[3]);
 #[inline(always)]
 fn wide_pairs(w: __m128i) -> [__m256i; 4] {
     unsafe {
-        let w = _mm256_broadcastsi128_si256(w);
+        let [a, b, c, d] = pairs(w);
         [
-            _mm256_shuffle_epi32::<0x00>(w),
-            _mm256_shuffle_epi32::<0x55>(w),
-            _mm256_shuffle_epi32::<0xaa>(w),
-            _mm256_shuffle_epi32::<0xff>(w),
+            _mm256_broadcastsi128_si256(a),
+            _mm256_broadcastsi128_si256(b),
+            _mm256_broadcastsi128_si256(c),
+            _mm256_broadcastsi128_si256(d),
         ]
     }
 }
