@@ -5,6 +5,9 @@ use flangeway::AxisName;
 use flangeway_host::image::OwnedAxis;
 use proptest::prelude::*;
 
+/// Error of a fraction: a cell's reciprocal is in single precision, rounded down.
+const RECIPROCAL: f64 = f32::EPSILON as f64;
+
 /// Cell by looking at every node.
 fn brute_force(nodes: &[f64], x: f64) -> usize {
     nodes[1..nodes.len() - 1].iter().filter(|node| x >= **node).count()
@@ -24,9 +27,9 @@ fn check(owned: &OwnedAxis, x: f64) {
         place.cell
     );
     let fraction = at_end(place.cell);
-    assert!((place.fraction - fraction.clamp(0.0, 1.0)).abs() < 1e-9 && (0.0..=1.0).contains(&place.fraction));
+    assert!((place.fraction - fraction.clamp(0.0, 1.0)).abs() < RECIPROCAL && (0.0..=1.0).contains(&place.fraction));
     let unclamped = fraction.clamp(-1024.0, 1024.0);
-    assert!((place.unclamped - unclamped).abs() < 1e-9 * unclamped.abs().max(1.0));
+    assert!((place.unclamped - unclamped).abs() < RECIPROCAL * unclamped.abs().max(1.0));
 }
 
 /// Every node, and the numbers next to it on both sides.

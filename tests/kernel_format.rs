@@ -17,7 +17,7 @@ fn every_byte_of_a_tiny_image() {
     let tiny = Synthetic::new(smallest_axes(), 1);
     let image = tiny.image();
     // Prelude.
-    assert_eq!(image[..12], [b'F', b'W', b'T', b'1', 1, 0, 0, 0, 0x00, 0x07, 0, 0]);
+    assert_eq!(image[..12], [b'F', b'W', b'T', b'1', 2, 0, 0, 0, 0x00, 0x07, 0, 0]);
     assert_eq!(image.len(), 0x0700);
     let crc = crc32c(image[..12].iter().chain(&image[16..]).copied());
     assert_eq!(image[12..16], crc.to_le_bytes());
@@ -47,25 +47,47 @@ fn every_byte_of_a_tiny_image() {
     bytes.push(0); // no left side
     assert_eq!(bytes.len(), 20 + 0x01d5);
     bytes.resize(512, 0);
-    // Axes: two nodes each, then one bin each, which leads to cell 0.
-    for axis in &tiny.axes {
-        let (first, last) = (axis[0], axis[1]);
-        for number in [first, 1.0 / (last - first), last, 0.0] {
-            bytes.extend(number.to_le_bytes());
-        }
+    // Axes: one bin each and once more, the whole of cell 0, whose node is the first of records and map; then two nodes each.
+    for _ in 0..8 {
+        bytes.extend([0, 0, 0, 0, 0, 0, 0x80, 0x3f, 0, 0, 0, 0, 0, 0, 0, 0]);
     }
-    bytes.extend([0; 8]);
-    bytes.resize(704, 0);
+    for node in tiny.axes.iter().flatten() {
+        bytes.extend(node.to_le_bytes());
+    }
+    assert_eq!(bytes.len(), 704);
     // Rigid map.
     for value in tiny.sides[0].rigid.as_flattened() {
         bytes.extend(value.to_le_bytes());
     }
     bytes.resize(768, 0);
-    for lane in tiny.sides[0].records.as_flattened() {
-        bytes.extend(lane.to_le_bytes());
+    for record in &tiny.sides[0].records {
+        let blocks = record.as_chunks::<4>().0;
+        for lane in [0, 2, 1, 3, 4, 6, 5, 7].iter().flat_map(|&block: &usize| blocks[block]) {
+            bytes.extend(lane.to_le_bytes());
+        }
     }
     assert!(bytes == image, "first difference at byte {:?}", bytes.iter().zip(&image).position(|(a, b)| a != b));
     assert_eq!(tiny.image(), image, "the same parts give the same bytes");
+}
+
+/// The bins of an uneven axis, written by hand: cells of 1, 2 and 5 bins.
+#[test]
+fn every_bin_of_an_uneven_axis() {
+    let mut axes = smallest_axes();
+    axes[1] = vec![0.0, 1.0 / 128.0, 3.0 / 128.0, 8.0 / 128.0];
+    let table = Synthetic::refined(axes, [4, 2], 1);
+    let image = table.image();
+    // Two bins of the lateral axis come first.
+    let bins = image[512 + 2 * 16..].as_chunks::<16>().0;
+    // Two records a node of the roll offset, two of these a node of the yaw; two rigid contacts a cell of the yaw.
+    let fifth = f32::from_bits(0x3e4c_cccc);
+    assert!(f64::from(fifth) < 0.2 && f64::from(fifth.next_up()) > 0.2);
+    let cells = [(0.0, 1.0, 0, 0), (1.0, 0.5, 256, 32), (3.0, fifth, 512, 64)];
+    for (bin, cell) in [0, 1, 1, 2, 2, 2, 2, 2, 2].into_iter().enumerate() {
+        let (start, reciprocal, records, rigid): (f32, f32, u32, u32) = cells[cell];
+        let words = [start.to_bits(), reciprocal.to_bits(), records, rigid].map(u32::to_le_bytes);
+        assert_eq!(bins[bin].as_slice(), words.as_flattened(), "bin {bin}");
+    }
 }
 
 #[test]
@@ -116,23 +138,24 @@ fn says_what_is_wrong() {
     let image = Synthetic::new(smallest_axes(), 1).image();
     let message = |at: usize, bytes: &[u8]| ContactTable::new(&forged(&image, at, bytes)).unwrap_err().to_string();
     assert_eq!(message(0, b"\x7fELF"), "not a contact table: it begins with \"\\x7fELF\", not with \"FWT1\"");
-    assert_eq!(message(4, &[2]), "table has format version 2, this program reads version 1");
+    assert_eq!(message(4, &[1]), "table has format version 1, this program reads version 2");
     assert_eq!(message(16, &[0xff; 4]), "header length is 4294967295 bytes, at most 1772 fit");
     assert_eq!(message(16, &[0xd4]), "header at byte 20 cannot be read");
     assert_eq!(message(16, &[0xd6]), "header at byte 20 cannot be read");
     let gauge = 20 + 16 + 5 + 32;
     assert_eq!(message(gauge, &f64::NAN.to_le_bytes()), "header field gauge is NaN, plausible are 0.1 to 3");
-    assert_eq!(message(gauge + 24, &[3]), "header describes a table of 2368 bytes, this one has 1792");
+    assert_eq!(message(gauge + 24, &[3]), "header describes a table of 2432 bytes, this one has 1792");
     assert_eq!(message(511, &[9]), "padding at byte 511 is 9, not 0");
-    let node = "lateral axis: node 1 is NaN, not a number above the node before and within plausible bounds";
-    assert_eq!(message(528, &f64::NAN.to_le_bytes()), node);
-    let reciprocal = "lateral axis: node 1 has the reciprocal 1, its cell's width says otherwise";
-    assert_eq!(message(536, &1.0_f64.to_le_bytes()), reciprocal);
+    let node = "lateral axis: node 1 is NaN, not a number above the node before, within plausible bounds and where a bin \
+                begins";
+    assert_eq!(message(648, &f64::NAN.to_le_bytes()), node);
     for parts in [0, 3, 17, 32, 255] {
         let refinement = format!("rigid map has {parts} parts in an interval of the yaw axis, not 1, 2, 4, 8 or 16");
         assert_eq!(message(gauge + 24 + 8 + 1, &[parts]), refinement);
     }
-    assert_eq!(message(640, &[1, 0]), "lateral axis: bin 0 leads to cell 1, its nodes say otherwise");
+    let bin = "lateral axis: bin 1 says (start 0, reciprocal 1, records 64, rigid map 0), the axis' nodes (start 0, \
+               reciprocal 1, records 0, rigid map 0)";
+    assert_eq!(message(512 + 16 + 8, &[64]), bin);
     assert_eq!(
         message(704, &f32::INFINITY.to_le_bytes()),
         "rigid map value at byte 704 is inf, plausible are -0.125 to 0.125"
@@ -161,7 +184,7 @@ fn says_what_is_wrong() {
 fn writer_refuses_what_does_not_fit() {
     let mut table = Synthetic::new(smallest_axes(), 1);
     let record = table.sides[0].records.pop().unwrap();
-    assert_eq!(write_image(&table.parts()).unwrap_err().to_string(), "records: 480 values, the axes need 512");
+    assert_eq!(write_image(&table.parts()).unwrap_err().to_string(), "records: 15 values, the axes need 16");
     table.sides[0].records.push(record);
     table.sides[0].rigid.push([0.0; 4]);
     assert_eq!(write_image(&table.parts()).unwrap_err().to_string(), "rigid contacts: 20 values, the axes need 16");

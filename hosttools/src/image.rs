@@ -5,11 +5,12 @@ use std::ops::Range;
 use std::path::Path;
 
 use flangeway::layout::{
-    CHECKSUM_AT, HEADER_AT, HEADER_LENGTH_AT, LENGTH_AT, MAGIC, MAGIC_AT, RIGID, Sections, SideSections, VERSION,
-    VERSION_AT, checksum, refined,
+    CHECKSUM_AT, HEADER_AT, HEADER_LENGTH_AT, LENGTH_AT, MAGIC, MAGIC_AT, RECORD, RIGID, Sections, SideSections,
+    Strides, VERSION, VERSION_AT, checksum, refined, rigid_strides, stored,
 };
 use flangeway::{
-    Axis, AxisCounts, AxisName, ContactTable, Header, LANES, MAX_BINS, NodeBytes, RigidMap, Scale, bin_start,
+    Axis, AxisCounts, AxisName, Bin, BinBytes, ContactTable, Header, LANES, MAX_BINS, NodeBytes, RigidMap, Scale,
+    bin_start,
 };
 
 use crate::error::{Error, Result};
@@ -33,7 +34,9 @@ pub struct SideParts<'a> {
     /// Rigid contacts, `[lateral][yaw]` over the refined axes: roll, rad, and the coefficients h0, h1, h2 of the height, m,
     /// m/rad, m/rad².
     pub rigid: &'a [[f32; 4]],
-    /// Records, `[lateral][yaw][roll offset][vertical]` over the axes.
+    /// Records, `[lateral][yaw][roll offset][vertical]` over the axes, each in the channels' order ([`Channel::lane`]).
+    ///
+    /// [`Channel::lane`]: flangeway::Channel::lane
     pub records: &'a [[i16; LANES]],
 }
 
@@ -42,25 +45,47 @@ pub struct SideParts<'a> {
 pub struct OwnedAxis {
     name: AxisName,
     nodes: Vec<NodeBytes>,
-    map: Vec<[u8; 2]>,
+    /// Where cells begin and the last one ends, in bins.
+    starts: Vec<usize>,
+    bins: Vec<BinBytes>,
+    strides: Strides,
 }
 
 impl OwnedAxis {
     /// An axis with these nodes (m or rad) and the fewest bins at whose beginnings they lie: every node a whole number of
     /// bins from the first. `f32` cannot say so exactly; the axis has the exact places, a few units in the last place away.
+    /// It leads to no records, see [`OwnedAxis::leading`].
     ///
     /// # Errors
     /// Fewer than two nodes, nodes that do not increase strictly or are not plausible, or do not lie so with 4096 bins.
     pub fn new(name: AxisName, nodes: &[f64]) -> Result<Self> {
         let refused = |message: String| Error::field("", format!("{name} axis"), message);
-        let map = bin_map(nodes).ok_or_else(|| {
+        let starts = cell_starts(nodes).ok_or_else(|| {
             let what = "do not increase strictly or lie on no even lattice of";
             refused(format!("{} nodes {what} up to {MAX_BINS} intervals", nodes.len()))
         })?;
         let axis =
-            Self { name, nodes: node_bytes(nodes, &map), map: map.iter().map(|cell| cell.to_le_bytes()).collect() };
-        Axis::new(name, &axis.nodes, &axis.map).map_err(|e| refused(e.to_string()))?;
+            Self { name, nodes: node_bytes(nodes, &starts), starts, bins: Vec::new(), strides: Strides::default() };
+        let axis = axis.leading(Strides::default());
+        axis.try_view().map_err(|e| refused(e.to_string()))?;
         Ok(axis)
+    }
+
+    /// The axis of a table with these strides.
+    #[must_use]
+    pub fn leading(mut self, strides: Strides) -> Self {
+        let cells = self.starts.windows(2).enumerate();
+        let bins = cells.flat_map(|(cell, ends)| {
+            let length = ends[1] - ends[0];
+            std::iter::repeat_n(Bin::new(cell, ends[0], length, strides).to_bytes(), length)
+        });
+        (self.bins, self.strides) = (bins.collect(), strides);
+        self.bins.extend(self.bins.last().copied());
+        self
+    }
+
+    fn try_view(&self) -> std::result::Result<Axis<'_>, flangeway::TableError> {
+        Axis::new(self.name, &self.nodes, &self.bins, self.strides)
     }
 
     /// The kernel's view of this axis.
@@ -69,55 +94,50 @@ impl OwnedAxis {
     /// Never: the constructor has made the same view.
     #[must_use]
     pub fn view(&self) -> Axis<'_> {
-        Axis::new(self.name, &self.nodes, &self.map).expect("checked by the constructor")
+        self.try_view().expect("checked by the constructor")
     }
 
-    /// Bins of the search map.
+    /// Number of its bins.
     #[must_use]
     pub fn bins(&self) -> usize {
-        self.map.len()
+        self.bins.len() - 1
     }
 
     fn counts(&self) -> AxisCounts {
         let count = |n: usize| u16::try_from(n).unwrap_or(u16::MAX);
-        AxisCounts { nodes: count(self.nodes.len()), bins: count(self.map.len()) }
+        AxisCounts { nodes: count(self.nodes.len()), bins: count(self.bins()) }
     }
 }
 
-/// Nodes as the image holds them: the coordinate, where a bin begins that leads to another cell than the one before, and
-/// the reciprocal of the distance to the next node, 0 at the last.
-fn node_bytes(nodes: &[f64], map: &[u16]) -> Vec<NodeBytes> {
-    let [first, last] = [nodes[0], nodes[nodes.len() - 1]];
-    let begins = |bin: &usize| *bin == 0 || map[*bin] != map[bin - 1];
-    let starts = (0..map.len()).filter(begins).map(|bin| bin_start(first, last, map.len(), bin));
-    let exact: Vec<f64> = starts.chain([last]).collect();
-    let reciprocal = |i: usize| exact.get(i + 1).map_or(0.0, |next| 1.0 / (next - exact[i]));
-    exact.iter().enumerate().map(|(i, at)| [*at, reciprocal(i)].map(f64::to_le_bytes)).collect()
+/// Nodes as the image holds them: exactly where the cells' first bins begin, and the end.
+fn node_bytes(nodes: &[f64], starts: &[usize]) -> Vec<NodeBytes> {
+    let (first, last) = (nodes[0], nodes[nodes.len() - 1]);
+    let [starts @ .., bins] = starts else { return Vec::new() };
+    let inner = starts.iter().map(|bin| bin_start(first, last, *bins, *bin));
+    inner.chain([last]).map(f64::to_le_bytes).collect()
 }
 
 /// Rounding of nodes that were halved again and again, and of the ends, in units of the largest magnitude.
 const ROUNDING: f64 = 4.0 * f32::EPSILON as f64;
 
-/// Cells of the fewest bins such that each inner node lies where one begins, but for rounding; none if there are none.
-fn bin_map(nodes: &[f64]) -> Option<Vec<u16>> {
+/// Where cells begin and the last one ends, in the fewest bins such that each inner node lies where one begins, but for
+/// rounding; none if there are none.
+fn cell_starts(nodes: &[f64]) -> Option<Vec<usize>> {
     let [first, inner @ .., last] = nodes else { return None };
     if nodes.len() > MAX_BINS + 1 || !nodes.is_sorted_by(|a, b| a < b) {
         return None;
     }
     let (first, last) = (*first, *last);
     let rounding = ROUNDING * first.abs().max(last.abs());
-    let bins = (nodes.len() - 1..=MAX_BINS).take_while(|bins| (last - first) / *bins as f64 > 8.0 * rounding);
-    let starts = |bins: usize| {
+    let mut bins = (nodes.len() - 1..=MAX_BINS).take_while(|bins| (last - first) / *bins as f64 > 8.0 * rounding);
+    bins.find_map(|bins| {
         let start = |x: &f64| {
             let bin = libm::rint((x - first) / (last - first) * bins as f64) as usize;
             ((bin_start(first, last, bins, bin) - *x).abs() <= rounding && bin < bins).then_some(bin)
         };
-        inner.iter().map(start).collect::<Option<Vec<usize>>>().filter(|starts| starts.is_sorted_by(|a, b| a < b))
-    };
-    { bins }.find_map(|bins| {
-        let starts = starts(bins)?;
-        // The cell of a bin: the number of inner nodes up to its beginning.
-        Some((0..bins).map(|bin| u16::try_from(starts.partition_point(|b| *b <= bin)).unwrap_or(u16::MAX)).collect())
+        let inner = inner.iter().map(start);
+        let starts: Vec<usize> = [Some(0)].into_iter().chain(inner).chain([Some(bins)]).collect::<Option<_>>()?;
+        starts.is_sorted_by(|a, b| a < b).then_some(starts)
     })
 }
 
@@ -142,16 +162,19 @@ impl OwnedRigidMap {
             bytes.as_chunks_mut().0.copy_from_slice(&node.map(f32::to_le_bytes));
             bytes
         };
+        let [l, y] = refinement;
+        let [along, across] = rigid_strides(refinement, yaw.len())
+            .ok_or_else(|| Error::field("", "rigid contacts", "the map would be larger than 4 GiB"))?;
+        let axis = |name, nodes, rigid| Ok(OwnedAxis::new(name, nodes)?.leading(Strides { records: 0, rigid }));
         let map = Self {
             axes: [
-                OwnedAxis::new(AxisName::Lateral, lateral)?,
-                OwnedAxis::new(AxisName::Yaw, yaw)?,
-                OwnedAxis::new(AxisName::RollOffset, roll_offset)?,
+                axis(AxisName::Lateral, lateral, along)?,
+                axis(AxisName::Yaw, yaw, across)?,
+                axis(AxisName::RollOffset, roll_offset, 0)?,
             ],
             refinement,
             nodes: nodes.iter().map(bytes).collect(),
         };
-        let [l, y] = refinement;
         match map.try_view() {
             Some(_) => Ok(map),
             None => Err(lengths("rigid contacts", nodes.len(), refined(lateral.len(), l) * refined(yaw.len(), y))),
@@ -203,9 +226,11 @@ pub fn write_image(parts: &ImageParts<'_>) -> Result<Vec<u8>> {
     image[LENGTH_AT].copy_from_slice(&number(sections.total));
     image[HEADER_LENGTH_AT].copy_from_slice(&number(header_bytes.len()));
     image[HEADER_AT..HEADER_AT + header_bytes.len()].copy_from_slice(&header_bytes);
-    for ((axis, nodes), bins) in axes.iter().zip(&sections.nodes).zip(&sections.bins) {
-        image[nodes.clone()].copy_from_slice(axis.nodes.as_flattened().as_flattened());
-        image[bins.clone()].copy_from_slice(axis.map.as_flattened());
+    let places = sections.nodes.iter().zip(&sections.bins).zip(sections.strides);
+    for (axis, ((nodes, bins), strides)) in axes.into_iter().zip(places) {
+        let axis = axis.leading(strides);
+        image[nodes.clone()].copy_from_slice(axis.nodes.as_flattened());
+        image[bins.clone()].copy_from_slice(axis.bins.as_flattened());
     }
     let [right, left] = &sections.sides;
     write_side(&mut image, right, &parts.right)?;
@@ -220,7 +245,16 @@ pub fn write_image(parts: &ImageParts<'_>) -> Result<Vec<u8>> {
 
 fn write_side(image: &mut [u8], sections: &SideSections, data: &SideParts<'_>) -> Result<()> {
     fill(image, &sections.rigid, "rigid contacts", data.rigid.as_flattened().iter().map(|x| x.to_le_bytes()))?;
-    fill(image, &sections.records, "records", data.records.as_flattened().iter().map(|q| q.to_le_bytes()))
+    fill(image, &sections.records, "records", data.records.iter().map(record_bytes))
+}
+
+/// A record as the image holds it.
+fn record_bytes(lanes: &[i16; LANES]) -> [u8; RECORD] {
+    let mut bytes = [0; RECORD];
+    for (lane, value) in lanes.iter().enumerate() {
+        bytes.as_chunks_mut().0[stored(lane)] = value.to_le_bytes();
+    }
+    bytes
 }
 
 /// Fills a section with values that must be exactly as many as fit.

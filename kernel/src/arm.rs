@@ -9,19 +9,21 @@
 //! The blend is a loop over eight lanes at a time: unrolled as a whole it would be 3.5 KB larger and no faster.
 #![expect(clippy::indexing_slicing, reason = "indices are constants, and the arrays' sizes are known")]
 
+use core::mem::MaybeUninit;
 use core::sync::atomic::{Ordering, compiler_fence};
 
-use crate::blend::{Cell, Edges, FINE, FINE_STEP, LaneScales, Lanes, edges, float, fractions, weights};
+use crate::blend::{Cell, Edges, FINE, FINE_STEP, LaneScales, Lanes, float, fractions, weights};
 use crate::channel::{BLOCK, LANES};
-use crate::layout::RECORD;
+use crate::layout::{RECORD, stored_block};
 
 /// Lanes in a word.
 const HALVES: usize = 2;
 /// Blocks in a turn of the loop. A block is summed at once: its eight sums, a word, an edge and its weight fit the core's
 /// registers.
 const TURN: usize = 2;
-/// Bytes of a turn's lanes.
-const TURN_BYTES: usize = 2 * BLOCK * TURN;
+/// Bytes from a turn's first block in a record to its second one, and those of both with what lies between.
+const APART: usize = 2 * BLOCK * (stored_block(1) - stored_block(0));
+const TURN_BYTES: usize = APART + 2 * BLOCK;
 /// Words from an edge's lower record to its upper one.
 const RECORD_WORDS: usize = RECORD / 4;
 
@@ -35,22 +37,26 @@ const _: () = {
 
 /// [`portable`](crate::blend::portable) by words.
 #[inline(always)]
-pub(crate) fn blend(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales) -> Option<Lanes> {
-    let edges = edges(records, cell)?;
+pub(crate) fn blend<'p>(
+    edges: &Edges<'_>,
+    cell: &Cell,
+    scales: &LaneScales,
+    place: &'p mut MaybeUninit<Lanes>,
+) -> &'p Lanes {
     // To be written over. Of a number that the compiler does not know to be zero: it would call a routine, which takes
     // several times as long as storing them.
-    let mut lanes = Lanes([core::hint::black_box(0.0); LANES]);
+    let lanes = place.write(Lanes([core::hint::black_box(0.0); LANES]));
     let weights = weights(cell);
     let weights = [weights.map(|w| i32::from(w.coarse)), weights.map(|w| i32::from(w.fine))];
     let scales = scales.offsets.as_chunks().0.iter().zip(scales.steps.as_chunks().0);
     for (turn, (out, (offsets, steps))) in lanes.0.as_chunks_mut().0.iter_mut().zip(scales).enumerate() {
         let t = if turn == 0 { fractions(cell, 0) } else { fractions(cell, 1) };
-        block::<0>(&edges, &weights, turn, t, [offsets, steps], out);
-        block::<1>(&edges, &weights, turn, fractions(cell, 1), [offsets, steps], out);
+        block::<0>(edges, &weights, turn, t, [offsets, steps], out);
+        block::<1>(edges, &weights, turn, fractions(cell, 1), [offsets, steps], out);
         // Keeps the compiler from interleaving turns, which would spill registers. It costs nothing.
         compiler_fence(Ordering::SeqCst);
     }
-    Some(lanes)
+    lanes
 }
 
 /// Block B of a turn's: offset + step (base + t rise), see [`portable`](crate::blend::portable).
@@ -88,11 +94,11 @@ fn sums<const B: usize>(edges: &Edges<'_>, weights: &[i32; 8], turn: usize) -> [
     let mut sums = [[0; BLOCK]; 2];
     for (nodes, weight) in edges.iter().zip(weights) {
         // From the turn's lanes at the lower node to those at the upper one, at fixed distances from one place.
-        let span = nodes.get(TURN_BYTES * turn..).and_then(<[_]>::first_chunk);
+        let span = nodes.get(2 * BLOCK * stored_block(TURN * turn)..).and_then(<[_]>::first_chunk);
         let span: &[u8; RECORD + TURN_BYTES] = span.unwrap_or(&[0; RECORD + TURN_BYTES]);
         for (node, sums) in sums.iter_mut().enumerate() {
             for (word, sums) in sums.as_chunks_mut::<HALVES>().0.iter_mut().enumerate() {
-                let [low, high] = halves(span, node * RECORD_WORDS + B * BLOCK / HALVES + word);
+                let [low, high] = halves(span, node * RECORD_WORDS + B * APART / 4 + word);
                 let [first, second] = sums;
                 *first += low * weight;
                 *second += high * weight;

@@ -3,6 +3,7 @@
 use core::fmt;
 
 use crate::error::TableError;
+use crate::layout::{BIN, Strides};
 use crate::math::{Two, at_least, at_most, single};
 
 /// Most bins an axis can have.
@@ -71,28 +72,86 @@ pub struct Place {
     pub clamped: bool,
 }
 
-/// A node in the image: its coordinate and the reciprocal of the distance to the next node (0 at the last), `f64`.
-pub type NodeBytes = [[u8; 8]; 2];
+/// A node's coordinate in the image, `f64`.
+pub type NodeBytes = [u8; 8];
 
-/// A node for a cell that a checked axis does not have.
-const NOTHING: &NodeBytes = &[[0; 8]; 2];
+/// A bin in the image, see [`Bin::to_bytes`].
+pub type BinBytes = [u8; BIN];
 
-/// Least width of a bin in units of the axis' largest magnitude, 2⁻²²: rounding then moves a coordinate by less than 2⁻²⁸
-/// of its cell, which is less than the weights can tell.
+/// What a bin says of the cell that it lies in: all that a lookup asks an axis for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bin {
+    /// The cell's first bin.
+    pub start: f32,
+    /// The greatest number whose product with the cell's bins is not above one: no fraction is above one for it.
+    pub reciprocal: f32,
+    /// Bytes from the first record to that of the cell's lower node.
+    pub records: u32,
+    /// The same in the rigid map; 0 on the axes that it does not have.
+    pub rigid: u32,
+}
+
+impl Bin {
+    /// The bins of a cell that takes so many from `start` on.
+    #[must_use]
+    #[expect(clippy::cast_possible_truncation, reason = "at most 4096 cells; a table's offsets are below 4 GiB")]
+    pub fn new(cell: usize, start: usize, bins: usize, strides: Strides) -> Self {
+        let bins = f32::from(count(bins));
+        let nearest = 1.0 / bins;
+        let above = f64::from(nearest) * f64::from(bins) > 1.0;
+        Self {
+            start: f32::from(count(start)),
+            reciprocal: if above { nearest.next_down() } else { nearest },
+            records: strides.records.wrapping_mul(cell as u32),
+            rigid: strides.rigid.wrapping_mul(cell as u32),
+        }
+    }
+
+    /// The four numbers in their order, little-endian.
+    #[must_use]
+    pub fn to_bytes(&self) -> BinBytes {
+        let mut bytes = [0; BIN];
+        let words = [self.start.to_bits(), self.reciprocal.to_bits(), self.records, self.rigid];
+        for (place, word) in bytes.as_chunks_mut().0.iter_mut().zip(words) {
+            *place = word.to_le_bytes();
+        }
+        bytes
+    }
+
+    fn from_bytes(bytes: &BinBytes) -> Self {
+        let word = |i: usize| u32::from_le_bytes(bytes.as_chunks().0.get(i).copied().unwrap_or_default());
+        let number = |i: usize| f32::from_bits(word(i));
+        Self { start: number(0), reciprocal: number(1), records: word(2), rigid: word(3) }
+    }
+}
+
+impl fmt::Display for Bin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { start, reciprocal, records, rigid } = self;
+        write!(f, "(start {start}, reciprocal {reciprocal}, records {records}, rigid map {rigid})")
+    }
+}
+
+/// A bin for a place that a checked axis does not have.
+const NOTHING: &BinBytes = &[0; BIN];
+
+/// Least width of a bin in units of the axis' largest magnitude, 2⁻²²: a node's coordinate, rounded to `f64`, is then
+/// within 2⁻³¹ bins of where its bin begins, which is less than the weights can tell.
 const LEAST_BIN: f64 = 1.0 / 4_194_304.0;
 
-/// An axis, read in place: its nodes, and the map of uniform bins to cells by which a cell is found in constant time.
+/// An axis, read in place: its nodes, and uniform bins by which a cell is found in constant time.
 ///
-/// Bins divide first node to last node evenly, and every node lies where a bin begins, so a bin lies in one cell:
-/// `map[bin]` is that cell. The cost is the same for every coordinate and spacing.
+/// Bins divide first node to last node evenly, and every node lies where a bin begins, so a bin lies in one cell and says
+/// all of it that a lookup needs. The cost is the same for every coordinate and spacing.
 #[derive(Clone, Copy)]
 pub struct Axis<'a> {
     nodes: &'a [NodeBytes],
-    map: &'a [[u8; 2]],
+    /// The last one twice.
+    bins: &'a [BinBytes],
+    strides: Strides,
     first: f64,
     last: f64,
     bins_per_unit: f64,
-    last_bin: f64,
 }
 
 /// Where a bin begins on an axis from `first` to `last`: first + bin ((last - first) / bins). Inner nodes are such numbers.
@@ -105,23 +164,36 @@ pub fn bin_start(first: f64, last: f64, bins: usize, bin: usize) -> f64 {
 
 impl<'a> Axis<'a> {
     /// None yet.
-    pub(crate) const EMPTY: Self =
-        Self { nodes: &[], map: &[], first: 0.0, last: 0.0, bins_per_unit: 0.0, last_bin: 0.0 };
+    pub(crate) const EMPTY: Self = Self {
+        nodes: &[],
+        bins: &[],
+        strides: Strides { records: 0, rigid: 0 },
+        first: 0.0,
+        last: 0.0,
+        bins_per_unit: 0.0,
+    };
 
-    /// An axis over little-endian nodes and `u16` bins.
+    /// An axis over little-endian nodes and bins, the last bin twice, in a table with these strides from node to node.
     ///
     /// # Errors
     /// Fewer than two nodes, no bins, too many or too narrow ones, nodes that do not increase strictly within
-    /// [`AxisName::bounds`], reciprocals or bins that do not fit the nodes.
-    pub fn new(name: AxisName, nodes: &'a [NodeBytes], map: &'a [[u8; 2]]) -> Result<Self, TableError> {
-        let counts = TableError::AxisCount { axis: name, nodes: count(nodes.len()), bins: count(map.len()) };
-        if nodes.len() < 2 || nodes.len() > MAX_BINS + 1 || map.is_empty() || map.len() > MAX_BINS {
+    /// [`AxisName::bounds`], bins that do not fit nodes and strides.
+    pub fn new(
+        name: AxisName,
+        nodes: &'a [NodeBytes],
+        bins: &'a [BinBytes],
+        strides: Strides,
+    ) -> Result<Self, TableError> {
+        let mut axis = Self { nodes, bins, strides, ..Self::EMPTY };
+        let bins = axis.bins();
+        let counts = TableError::AxisCount { axis: name, nodes: count(nodes.len()), bins: count(bins) };
+        if nodes.len() < 2 || nodes.len() > MAX_BINS + 1 || bins == 0 || bins > MAX_BINS {
             return Err(counts);
         }
         let (least, largest) = name.bounds();
         let mut before = f64::NEG_INFINITY;
         for (index, bytes) in nodes.iter().enumerate() {
-            let value = coordinate(bytes);
+            let value = f64::from_le_bytes(*bytes);
             // A comparison with NaN is false. The ends are what an `f32` can hold, so the axis has a length.
             let inner = index > 0 && index + 1 < nodes.len();
             let good = value > before
@@ -133,46 +205,52 @@ impl<'a> Axis<'a> {
             }
             before = value;
         }
-        for (index, at) in nodes.iter().enumerate() {
-            let needed = nodes.get(index + 1).map_or(0.0, |next| 1.0 / (coordinate(next) - coordinate(at)));
-            check_reciprocal(name, index, at, needed)?;
-        }
-        let mut axis = Self { nodes, map, ..Self::EMPTY };
         axis.first = axis.node(0);
         axis.last = axis.node(nodes.len() - 1);
-        let bins = f64::from(count(map.len()));
+        let bins = f64::from(count(bins));
         let length = axis.last - axis.first;
         if length < bins * LEAST_BIN * axis.first.abs().max(axis.last.abs()) {
             return Err(counts);
         }
         axis.bins_per_unit = bins / length;
-        axis.last_bin = bins - 1.0;
         axis.check_bins(name)?;
         Ok(axis)
     }
 
-    /// Every inner node lies where a bin begins, and every bin leads to its cell.
+    /// Every inner node lies where a bin begins, and every bin says what its cell is.
     fn check_bins(&self, name: AxisName) -> Result<(), TableError> {
-        let inner_end = self.nodes.len() - 1;
-        let mut cell = 0;
-        for (index, bytes) in self.map.iter().enumerate() {
-            let found = u16::from_le_bytes(*bytes);
-            let start = bin_start(self.first, self.last, self.map.len(), index);
-            cell += usize::from(cell + 1 < inner_end && self.node(cell + 1).to_bits() == start.to_bits());
-            let missed = index + 1 == self.map.len() && cell + 1 < inner_end;
-            if usize::from(found) != cell || missed {
-                return Err(TableError::AxisBin { axis: name, index, found });
+        let begins = |bin: usize, node: usize| {
+            self.node(node).to_bits() == bin_start(self.first, self.last, self.bins(), bin).to_bits()
+        };
+        let (mut start, last_cell) = (0, self.nodes.len() - 2);
+        for cell in 0..=last_cell {
+            let ends = |bin: &usize| cell < last_cell && begins(*bin, cell + 1);
+            let end = (start + 1..self.bins()).find(ends).unwrap_or(self.bins());
+            // A cell without bins: the node before lies where none begins.
+            if start >= end {
+                return Err(TableError::AxisNode { axis: name, index: cell, value: single(self.node(cell)) });
             }
+            let needed = Bin::new(cell, start, end - start, self.strides);
+            let all = start..if cell < last_cell { end } else { self.bins.len() };
+            for (index, bytes) in all.clone().zip(self.bins.get(all).unwrap_or_default()) {
+                if *bytes != needed.to_bytes() {
+                    return Err(TableError::AxisBin { axis: name, index, found: Bin::from_bytes(bytes), needed });
+                }
+            }
+            start = end;
         }
         Ok(())
     }
 
-    /// Cell of a bin; the cell's lower node and the reciprocal of its width.
-    #[inline(always)]
-    fn cell(&self, bin: usize) -> (u32, Two) {
-        let cell = u32::from(u16::from_le_bytes(self.map.get(bin).copied().unwrap_or_default()));
-        let node = self.nodes.get(cell as usize).unwrap_or(NOTHING);
-        (cell, Two::new(node.map(f64::from_le_bytes)))
+    /// Number of bins.
+    fn bins(&self) -> usize {
+        self.bins.len().saturating_sub(1)
+    }
+
+    /// Bytes from one node to the next that its bins lead by.
+    #[must_use]
+    pub const fn strides(&self) -> Strides {
+        self.strides
     }
 
     /// Number of nodes.
@@ -193,12 +271,12 @@ impl<'a> Axis<'a> {
     #[inline]
     #[must_use]
     pub fn node(&self, index: usize) -> f64 {
-        self.nodes.get(index).map_or(0.0, coordinate)
+        self.nodes.get(index).copied().map_or(0.0, f64::from_le_bytes)
     }
 
     /// All nodes' coordinates, m or rad.
     pub fn nodes(&self) -> impl Iterator<Item = f64> + 'a {
-        self.nodes.iter().map(coordinate)
+        self.nodes.iter().copied().map(f64::from_le_bytes)
     }
 
     /// First and last node, m or rad.
@@ -208,15 +286,19 @@ impl<'a> Axis<'a> {
         (self.first, self.last)
     }
 
-    /// Finds the cell of a coordinate and its place in it. `x` must be a number.
-    #[inline]
+    /// Finds the cell of a coordinate and its place in it, as a lookup does, which has no need of the cell's number. `x`
+    /// must be a number.
     #[must_use]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a bin's number")]
     pub fn locate(&self, x: f64) -> Place {
-        let places = AxisPair::new([*self; 2]).locate(Two::all(x));
-        let ([cell, _], [fraction, _]) = (places.cells, places.fraction.numbers());
+        let pair = AxisPair::new([*self; 2]);
+        let (places, [bin, _]) = (pair.locate(Two::all(x)), pair.bins_of(Two::all(x)));
+        let (start, [fraction, _]) = (Bin::from_bytes(bin).start, places.fraction.numbers());
         let [unclamped, _] = places.unclamped().numbers();
+        // Nodes lie where bins begin.
+        let begin = bin_start(self.first, self.last, self.bins(), start as usize);
         Place {
-            cell: cell as usize,
+            cell: self.nodes().skip(1).take_while(|node| *node <= begin).count(),
             fraction: at_most(at_least(fraction, 0.0), 1.0),
             unclamped,
             clamped: places.clamped != 0,
@@ -227,7 +309,10 @@ impl<'a> Axis<'a> {
 /// Where two coordinates lie on their axes, see [`Place`].
 #[derive(Clone, Copy)]
 pub(crate) struct Places {
-    pub(crate) cells: [u32; 2],
+    /// Bytes to the first record of their cells, the two axes together.
+    pub(crate) records: u32,
+    /// The same in the rigid map.
+    pub(crate) rigid: u32,
     /// Clamped to 0..=1, but for rounding: within 2⁻²⁸ of it.
     pub(crate) fraction: Two,
     /// How far the coordinates lie outside their axes, in widths of the first or last cell.
@@ -240,7 +325,7 @@ impl Places {
     /// The first cells, on no axis in particular.
     #[cfg(test)]
     pub(crate) fn first(fraction: [f64; 2]) -> Self {
-        Self { cells: [0; 2], fraction: Two::new(fraction), outside: Two::all(0.0), clamped: 0 }
+        Self { records: 0, rigid: 0, fraction: Two::new(fraction), outside: Two::all(0.0), clamped: 0 }
     }
 
     /// The fractions not clamped, but to +-[`EXTRAPOLATION_LIMIT`].
@@ -258,62 +343,73 @@ pub(crate) struct AxisPair<'a> {
     first: [f64; 2],
     last: [f64; 2],
     bins_per_unit: [f64; 2],
-    last_bin: [f64; 2],
-    axes: [Axis<'a>; 2],
+    bins: [&'a [BinBytes]; 2],
 }
 
 impl<'a> AxisPair<'a> {
     /// None yet.
-    pub(crate) const EMPTY: Self =
-        Self { axes: [Axis::EMPTY; 2], first: [0.0; 2], last: [0.0; 2], bins_per_unit: [0.0; 2], last_bin: [0.0; 2] };
+    pub(crate) const EMPTY: Self = Self { first: [0.0; 2], last: [0.0; 2], bins_per_unit: [0.0; 2], bins: [&[]; 2] };
 
     pub(crate) fn new(axes: [Axis<'a>; 2]) -> Self {
         Self {
-            axes,
+            bins: axes.map(|axis| axis.bins),
             first: axes.map(|axis| axis.first),
             last: axes.map(|axis| axis.last),
             bins_per_unit: axes.map(|axis| axis.bins_per_unit),
-            last_bin: axes.map(|axis| axis.last_bin),
         }
+    }
+
+    /// Coordinates that lie on the axes, by their distance from the first nodes in bins.
+    #[inline(always)]
+    fn position(&self, inside: Two) -> Two {
+        (inside - Two::new(self.first)) * Two::new(self.bins_per_unit)
+    }
+
+    #[inline(always)]
+    fn clamp(&self, x: Two) -> Two {
+        x.at_least(Two::new(self.first)).at_most(Two::new(self.last))
+    }
+
+    /// Bins of a position; that after the last one at the axis' end.
+    #[inline(always)]
+    fn bins_at(&self, position: Two) -> [&'a BinBytes; 2] {
+        let ([a, b], [bins_a, bins_b]) = (position.truncate(), self.bins);
+        [bins_a.get(a).unwrap_or(NOTHING), bins_b.get(b).unwrap_or(NOTHING)]
+    }
+
+    /// Bins that coordinates lie in.
+    fn bins_of(&self, x: Two) -> [&'a BinBytes; 2] {
+        self.bins_at(self.position(self.clamp(x)))
     }
 
     /// ```text
     /// x'       = x, first at least, last at most
-    /// cell     = map[min(floor((x' - first) bins_per_unit), bins - 1)]
-    /// fraction = (x' - node[cell]) / (node[cell + 1] - node[cell])
+    /// position = (x' - first) bins_per_unit
+    /// bin      = floor(position)
+    /// fraction = (position - start[bin]) reciprocal[bin]
     /// ```
     #[inline(always)]
     pub(crate) fn locate(&self, x: Two) -> Places {
-        let first = Two::new(self.first);
-        let inside = x.at_least(first).at_most(Two::new(self.last));
-        let position = (inside - first) * Two::new(self.bins_per_unit);
-        let [bin_a, bin_b] = position.at_most(Two::new(self.last_bin)).truncate();
-        let [a, b] = &self.axes;
-        let ((cell_a, node_a), (cell_b, node_b)) = (a.cell(bin_a), b.cell(bin_b));
-        let [lower, per_unit] = Two::transpose([node_a, node_b]);
+        let inside = self.clamp(x);
+        let position = self.position(inside);
+        let [a, b] = self.bins_at(position);
+        let numbers = |bin: &BinBytes| Two::of_singles(bin.first_chunk().unwrap_or(&[0; 8]));
+        let offset =
+            |bin: &BinBytes, word: usize| u32::from_le_bytes(bin.as_chunks().0.get(word).copied().unwrap_or_default());
+        let [start, reciprocal] = Two::transpose([numbers(a), numbers(b)]);
         Places {
-            cells: [cell_a, cell_b],
-            fraction: (inside - lower) * per_unit,
-            outside: (x - inside) * per_unit,
+            records: offset(a, 2).wrapping_add(offset(b, 2)),
+            rigid: offset(a, 3).wrapping_add(offset(b, 3)),
+            fraction: (position - start) * reciprocal,
+            outside: (x - inside) * Two::new(self.bins_per_unit) * reciprocal,
             clamped: inside.differs(x),
         }
     }
 }
 
-/// A node's coordinate, m or rad.
-#[inline(always)]
-fn coordinate([coordinate, _]: &NodeBytes) -> f64 {
-    f64::from_le_bytes(*coordinate)
-}
-
-fn check_reciprocal(axis: AxisName, index: usize, [_, reciprocal]: &NodeBytes, needed: f64) -> Result<(), TableError> {
-    let found = f64::from_le_bytes(*reciprocal);
-    if found.to_bits() == needed.to_bits() { Ok(()) } else { Err(TableError::AxisReciprocal { axis, index, found }) }
-}
-
 impl fmt::Debug for Axis<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Axis({} nodes in {} bins from {} to {})", self.nodes.len(), self.map.len(), self.first, self.last)
+        write!(f, "Axis({} nodes in {} bins from {} to {})", self.nodes.len(), self.bins(), self.first, self.last)
     }
 }
 
@@ -327,55 +423,79 @@ mod tests {
     use super::*;
     use std::vec::Vec;
 
-    fn bytes(nodes: &[f64], map: &[u16]) -> (Vec<NodeBytes>, Vec<[u8; 2]>) {
-        let reciprocal = |i: usize| nodes.get(i + 1).map_or(0.0, |next| 1.0 / (*next - nodes[i]));
-        let node = |(i, x): (usize, &f64)| [*x, reciprocal(i)].map(f64::to_le_bytes);
-        (nodes.iter().enumerate().map(node).collect(), map.iter().map(|x| x.to_le_bytes()).collect())
+    const STRIDES: Strides = Strides { records: 128, rigid: 32 };
+
+    /// Nodes, and bins of cells of these lengths.
+    fn bytes(nodes: &[f64], lengths: &[usize]) -> (Vec<NodeBytes>, Vec<BinBytes>) {
+        let mut bins = Vec::new();
+        for (cell, length) in lengths.iter().enumerate() {
+            let bin = Bin::new(cell, bins.len(), *length, STRIDES).to_bytes();
+            bins.extend(core::iter::repeat_n(bin, *length));
+        }
+        bins.extend(bins.last().copied());
+        (nodes.iter().map(|x| x.to_le_bytes()).collect(), bins)
     }
 
     #[test]
     fn finds_cells_between_uneven_nodes() {
         // Range 1/16 in 8 bins.
-        let (nodes, map) = bytes(&[0.0, 1.0, 3.0, 8.0].map(|k| k / 128.0), &[0, 1, 1, 2, 2, 2, 2, 2]);
-        let axis = Axis::new(AxisName::Yaw, &nodes, &map).unwrap();
+        let (nodes, bins) = bytes(&[0.0, 1.0, 3.0, 8.0].map(|k| k / 128.0), &[1, 2, 5]);
+        let axis = Axis::new(AxisName::Yaw, &nodes, &bins, STRIDES).unwrap();
         for (x, cell) in [(0.0, 0), (0.99, 0), (1.01, 1), (2.99, 1), (3.01, 2), (8.0, 2), (99.0, 2), (-1.0, 0)] {
             let x = x / 128.0;
             assert_eq!(axis.locate(x).cell, cell, "{x}");
+            let places = AxisPair::new([axis; 2]).locate(Two::all(x));
+            let offsets = [places.records / 256, places.rigid / 64].map(|cell| usize::try_from(cell).unwrap());
+            assert_eq!(offsets, [cell; 2]);
         }
+        // The greatest number by which five bins are at most one.
         let end = axis.locate(axis.node(3));
-        assert!((end.fraction - 1.0).abs() < 1e-15 && !end.clamped);
+        assert!(end.fraction <= 1.0 && end.fraction > 1.0 - 1.2e-7 && !end.clamped);
+        let below = axis.locate(axis.node(2).next_down());
+        assert!(below.fraction <= 1.0 && below.fraction > 1.0 - 1e-15);
         let node = axis.locate(axis.node(2));
         assert_eq!((node.cell, node.fraction), (2, 0.0));
         let outside = axis.locate(13.0 / 128.0);
-        assert!(outside.clamped && outside.fraction == 1.0 && (outside.unclamped - 2.0).abs() < 1e-6);
+        assert!(outside.clamped && outside.fraction > 1.0 - 1.2e-7 && (outside.unclamped - 2.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn reciprocals_are_the_greatest_whose_product_is_at_most_one() {
+        for length in 1..=MAX_BINS {
+            let (bins, reciprocal) = (f64::from(count(length)), Bin::new(0, 0, length, STRIDES).reciprocal);
+            assert!(f64::from(reciprocal) * bins <= 1.0 && f64::from(reciprocal.next_up()) * bins > 1.0, "{length}");
+        }
     }
 
     #[test]
     fn refuses_bad_nodes_and_bins() {
-        let check = |nodes: &[f64], map: &[u16]| {
-            let (nodes, map) = bytes(nodes, map);
-            Axis::new(AxisName::Yaw, &nodes, &map).map(|_| ()).unwrap_err()
+        let refused = |nodes: &[NodeBytes], bins: &[BinBytes]| {
+            Axis::new(AxisName::Yaw, nodes, bins, STRIDES).map(|_| ()).unwrap_err()
         };
-        assert!(matches!(check(&[0.0], &[0]), TableError::AxisCount { nodes: 1, bins: 1, .. }));
+        let check = |nodes: &[f64], lengths: &[usize]| {
+            let (nodes, bins) = bytes(nodes, lengths);
+            refused(&nodes, &bins)
+        };
+        assert!(matches!(check(&[0.0], &[1]), TableError::AxisCount { nodes: 1, bins: 1, .. }));
         assert!(matches!(check(&[0.0, 0.125], &[]), TableError::AxisCount { .. }));
-        assert!(matches!(check(&[0.0, 0.0], &[0]), TableError::AxisNode { index: 1, .. }));
-        assert!(matches!(check(&[0.0, f64::NAN], &[0]), TableError::AxisNode { index: 1, .. }));
-        assert!(matches!(check(&[-0.1, 0.125], &[0]), TableError::AxisNode { index: 0, .. }));
-        assert!(matches!(check(&[0.0, 0.5], &[0]), TableError::AxisNode { index: 1, .. }));
-        let (mut nodes, map) = bytes(&[0.0, 0.125], &[0]);
-        nodes[0][1] = 9.9_f64.to_le_bytes();
-        let refused = Axis::new(AxisName::Yaw, &nodes, &map).map(|_| ()).unwrap_err();
-        assert!(matches!(refused, TableError::AxisReciprocal { index: 0, found: 9.9, .. }));
-        nodes[0] = [1e-300_f64, 10.0].map(f64::to_le_bytes);
-        let refused = Axis::new(AxisName::Yaw, &nodes, &map).map(|_| ()).unwrap_err();
-        assert!(matches!(refused, TableError::AxisNode { index: 0, .. }));
-        assert!(matches!(check(&[0.0, 0.0625, 0.125], &[1]), TableError::AxisBin { index: 0, .. }));
-        assert!(matches!(check(&[0.0, 0.0625, 0.125], &[0, 0]), TableError::AxisBin { index: 1, .. }));
-        // A node inside a bin.
-        assert!(matches!(check(&[0.0, 0.062, 0.125], &[0, 1]), TableError::AxisBin { index: 1, .. }));
-        assert!(matches!(check(&[0.0, 0.0625, 0.125], &[0]), TableError::AxisBin { index: 0, .. }));
+        assert!(matches!(check(&[0.0, 0.0], &[1]), TableError::AxisNode { index: 1, .. }));
+        assert!(matches!(check(&[0.0, f64::NAN], &[1]), TableError::AxisNode { index: 1, .. }));
+        assert!(matches!(check(&[-0.1, 0.125], &[1]), TableError::AxisNode { index: 0, .. }));
+        assert!(matches!(check(&[0.0, 0.5], &[1]), TableError::AxisNode { index: 1, .. }));
+        // A cell of two bins that says one, cells without bins, and a node inside a bin.
+        assert!(matches!(check(&[0.0, 0.125], &[1, 1]), TableError::AxisBin { index: 0, .. }));
+        assert!(matches!(check(&[0.0, 0.0625, 0.125], &[1]), TableError::AxisNode { index: 1, .. }));
+        assert!(matches!(check(&[0.0, 0.0625, 0.125], &[2]), TableError::AxisBin { index: 0, .. }));
+        assert!(matches!(check(&[0.0, 0.062, 0.125], &[1, 1]), TableError::AxisBin { index: 0, .. }));
+        // Each of a bin's numbers.
+        let (nodes, good) = bytes(&[0.0, 0.0625, 0.125], &[1, 1]);
+        for (at, bad) in [(0, 1), (4, 1), (8, 1), (12, 1), (0, 2)] {
+            let mut bins = good.clone();
+            bins[bad][at] ^= 1;
+            assert!(matches!(refused(&nodes, &bins), TableError::AxisBin { index, .. } if index == bad));
+        }
         // Bins so narrow that rounding tells.
         let neighbour = f64::from(0.125_f32.next_down());
-        assert!(matches!(check(&[neighbour, 0.125], &[0]), TableError::AxisCount { .. }));
+        assert!(matches!(check(&[neighbour, 0.125], &[1]), TableError::AxisCount { .. }));
     }
 }

@@ -9,7 +9,7 @@ use crate::error::TableError;
 use crate::header::{Header, MAX_PARTS, SideHeader};
 use crate::layout::{
     CHECKSUM_AT, HEADER_AT, HEADER_LENGTH_AT, HEADER_LIMIT, LENGTH_AT, MAGIC, MAGIC_AT, RECORD, RIGID, Sections,
-    VERSION, VERSION_AT, checksum,
+    VERSION, VERSION_AT, checksum, stored,
 };
 use crate::pose::Side;
 
@@ -131,7 +131,8 @@ pub(crate) fn axes<'a>(
         }
         let nodes = sections.nodes.get(name.index()).ok_or(missing)?;
         let bins = sections.bins.get(name.index()).ok_or(missing)?;
-        *axis = Axis::new(name, chunks(image, nodes).as_chunks().0, chunks(image, bins))?;
+        let strides = sections.strides.get(name.index()).copied().ok_or(missing)?;
+        *axis = Axis::new(name, chunks(image, nodes), chunks(image, bins), strides)?;
     }
     Ok(())
 }
@@ -169,11 +170,11 @@ pub(crate) fn records<'a>(image: &'a [u8], section: &Range<usize>) -> Result<&'a
     Ok(records)
 }
 
-/// The integers of a record.
+/// The integers of a record, in the channels' order.
 pub(crate) fn lanes(record: &[u8; RECORD]) -> [i16; LANES] {
     let mut lanes = [0; LANES];
-    for (lane, bytes) in lanes.iter_mut().zip(record.as_chunks().0) {
-        *lane = i16::from_le_bytes(*bytes);
+    for (lane, value) in lanes.iter_mut().enumerate() {
+        *value = i16::from_le_bytes(record.as_chunks().0.get(stored(lane)).copied().unwrap_or_default());
     }
     lanes
 }

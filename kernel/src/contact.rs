@@ -1,11 +1,13 @@
 //! Contacts: what a lookup answers, and how it is rebuilt from the blended channels.
 
+use core::sync::atomic::{Ordering, compiler_fence};
+
 use heapless::Vec;
 use nalgebra::Vector3;
 
 use crate::blend::Lanes;
 use crate::channel::{BLOCK, LANES, SLOTS, Slot};
-use crate::displacement::Attitude;
+use crate::displacement::{Attitude, Displacement};
 use crate::flags::Flags;
 use crate::instructions::{Eight as _, Instructions};
 use crate::math::{Four, Quad, single};
@@ -132,16 +134,29 @@ impl Wheel {
     }
 }
 
-/// What rebuilding needs beside the channels.
-pub(crate) struct Frame<'a> {
-    pub(crate) wheel: &'a Wheel,
-    /// Factor of longitudinal positions that mirrors back.
-    pub(crate) longitudinal_sign: f64,
-    pub(crate) attitude: &'a Attitude,
-    /// u + b and w: where the tape-circle point lies, m.
-    pub(crate) place: [f64; 2],
-    /// b cos φ - r0 sin φ: how far it is from the wheelset's centre, in the direction of the axle before roll, m.
-    pub(crate) arm: f64,
+/// What rebuilding needs of the pose.
+#[derive(Clone, Copy)]
+pub(crate) struct Frame {
+    /// sin ψ, sin φ, cos ψ, cos φ.
+    rotation: Four,
+    /// u + b and w: where the tape-circle point lies, m; b cos φ - r0 sin φ: how far it is from the wheelset's centre, in the
+    /// direction of the axle before roll, m; the factor of longitudinal positions that mirrors back.
+    place: Four,
+}
+
+impl Frame {
+    #[inline(always)]
+    pub(crate) fn new(
+        geometry: &WheelGeometry,
+        attitude: &Attitude,
+        displacement: &Displacement,
+        longitudinal_sign: f64,
+    ) -> Self {
+        let (b, psi, phi) = (geometry.lateral_position, &attitude.yaw, &attitude.roll);
+        let arm = b - attitude.inwards(geometry);
+        let place = [displacement.lateral + b, displacement.vertical, arm, longitudinal_sign];
+        Self { rotation: Quad::new([psi.sin, phi.sin, psi.cos, phi.cos]).single(), place: Quad::new(place).single() }
+    }
 }
 
 /// Contacts of the three slots and one that is not used, quantity by quantity.
@@ -163,22 +178,26 @@ struct Candidates {
 /// N = C δ+^1.5        a = K sqrt(δ+)        b = K' sqrt(δ+)
 /// ```
 #[inline(always)]
-fn rebuild(lanes: &Lanes, frame: &Frame<'_>) -> Candidates {
+fn rebuild(lanes: &Lanes, wheel: &Wheel, frame: &Frame) -> Candidates {
     let blocks: &[[f32; BLOCK]; LANES / BLOCK] =
         lanes.0.as_chunks().0.first_chunk().unwrap_or(&[[0.0; BLOCK]; LANES / BLOCK]);
-    let [indentation, c, k, k_across, e, s, radius_offset, angle] = blocks.each_ref().map(Four::load);
+    let [_, _, _, _, e, s, radius_offset, _] = blocks.each_ref().map(Four::load);
+    let rolling_radius = wheel.radius + radius_offset;
+    let [x, y, z] = position(e, s, radius_offset, rolling_radius, frame);
+    let lateral_sign = wheel.lateral_sign;
+    let y = lateral_sign * y;
+    // Read again, so that no register holds them meanwhile.
+    compiler_fence(Ordering::SeqCst);
+    let [indentation, c, k, k_across, e, s, _, angle] = blocks.each_ref().map(Four::load);
     let wheel_curvature = Four::fourths([indentation, c, k]);
     let rail_curvature = Four::fourths([k_across, e, s]);
     let zero = Four::all(0.0);
     let depth = indentation.at_least(zero);
     let root = depth.sqrt();
-    let rolling_radius = frame.wheel.radius + radius_offset;
-    let lateral_sign = frame.wheel.lateral_sign;
-    let [x, y, z] = position(e, s, radius_offset, rolling_radius, frame);
     // N = C δ+ sqrt(δ+)
     let normal_force = c.at_least(zero) * (depth * root);
     Candidates {
-        first: [normal_force, indentation, x, lateral_sign * y],
+        first: [normal_force, indentation, x, y],
         second: [z, lateral_sign * angle, rolling_radius, s],
         third: [k.at_least(zero) * root, k_across.at_least(zero) * root, wheel_curvature, rail_curvature],
     }
@@ -197,12 +216,9 @@ fn rebuild(lanes: &Lanes, frame: &Frame<'_>) -> Candidates {
 /// z  = w + s sin φ + h cos φ
 /// ```
 #[inline(always)]
-fn position(e: Four, s: Four, radius_offset: Four, radius: Four, frame: &Frame<'_>) -> [Four; 3] {
-    let (psi, phi) = (&frame.attitude.yaw, &frame.attitude.roll);
-    let [sin_psi, sin_phi, cos_psi, cos_phi] = Quad::new([psi.sin, phi.sin, psi.cos, phi.cos]).single().spread();
-    let [place_y, place_z] = frame.place;
-    let [place_y, place_z, arm, sign] =
-        Quad::new([place_y, place_z, frame.arm, frame.longitudinal_sign]).single().spread();
+fn position(e: Four, s: Four, radius_offset: Four, radius: Four, frame: &Frame) -> [Four; 3] {
+    let [sin_psi, sin_phi, cos_psi, cos_phi] = frame.rotation.spread();
+    let [place_y, place_z, arm, sign] = frame.place.spread();
     // h = (R - r0) - e² / (R + sqrt(R² - e²))
     let e_squared = e * e;
     let h = radius_offset - e_squared / (radius + (radius * radius - e_squared).at_least(Four::all(0.0)).sqrt());
@@ -225,8 +241,15 @@ impl Contacts {
     /// Takes the slots' contacts that carry force, none if not `valid`; the same work for any number of them. Returns
     /// whether there is any.
     #[inline(always)]
-    pub(crate) fn fill<I: Instructions>(&mut self, with: I, lanes: &Lanes, frame: &Frame<'_>, valid: bool) -> bool {
-        let candidates = rebuild(lanes, frame);
+    pub(crate) fn fill<I: Instructions>(
+        &mut self,
+        with: I,
+        lanes: &Lanes,
+        wheel: &Wheel,
+        frame: &Frame,
+        valid: bool,
+    ) -> bool {
+        let candidates = rebuild(lanes, wheel, frame);
         let carries = candidates.first[0].above_zero() & usize::from(valid).wrapping_neg();
         let (eight, four) = (with.transposed([candidates.first, candidates.second]), Four::transpose(candidates.third));
         self.list.clear();
@@ -247,6 +270,7 @@ impl Contacts {
 mod tests {
     use super::*;
     use crate::channel::Channel;
+    use crate::instructions::Baseline;
 
     fn tilted(angle: f32) -> Contact {
         Contact { angle, ..Contact::NONE }
@@ -279,8 +303,7 @@ mod tests {
     fn contacts_without_force_are_left_out() {
         let geometry = WheelGeometry { nominal_radius: 0.46, lateral_position: 0.75 };
         let (wheel, attitude) = (Wheel::new(&geometry, Side::Right), Attitude::new(0.0, 0.0));
-        let place = [0.75, 0.0];
-        let frame = Frame { wheel: &wheel, longitudinal_sign: 1.0, attitude: &attitude, place, arm: 0.75 };
+        let frame = Frame::new(&geometry, &attitude, &Displacement::default(), 1.0);
         for bits in 0..8_usize {
             let mut lanes = Lanes::ZERO;
             let carrying = || Slot::ALL.into_iter().filter(|slot| bits >> slot.index() & 1 == 1);
@@ -289,12 +312,12 @@ mod tests {
                 lanes.0[Channel::Indentation.lane(slot)] = if bits >> slot.index() & 1 == 1 { 1e-4 } else { -1e-4 };
             }
             let mut contacts = Contacts::NONE;
-            assert_eq!(contacts.fill(crate::instructions::Baseline, &lanes, &frame, true), bits != 0);
+            assert_eq!(contacts.fill(Baseline, &lanes, &wheel, &frame, true), bits != 0);
             assert!(contacts.iter().map(|contact| contact.slot).eq(carrying()));
             assert_eq!(contacts.total_normal_force(), contacts.iter().map(|c| c.normal_force).sum::<f32>());
             // Forces grow with the slot.
             assert_eq!(contacts.strongest().map(|c| c.slot), carrying().next_back());
-            assert!(!contacts.fill(crate::instructions::Baseline, &lanes, &frame, false) && contacts.list.is_empty());
+            assert!(!contacts.fill(Baseline, &lanes, &wheel, &frame, false) && contacts.list.is_empty());
         }
     }
 }

@@ -4,6 +4,8 @@
 //! the last neighbours need, so that the compiler can see that all but the first check hold.
 #![deny(clippy::indexing_slicing)]
 
+use crate::instructions::opaque;
+
 /// `N` neighbours along the last dimension.
 type Run<'a, T, const N: usize> = &'a [T; N];
 
@@ -14,7 +16,7 @@ type Square<'a, T, const N: usize> = [Run<'a, T, N>; 4];
 #[inline(always)]
 fn window<T, const N: usize>(list: &[T], base: u32, extent: usize) -> Option<&[T]> {
     let base = base as usize;
-    list.get(base..base + extent + N)
+    list.get(base..base + (extent + N))
 }
 
 /// The first and the last run.
@@ -39,9 +41,10 @@ pub(crate) fn two<T, const N: usize>(list: &[T], base: u32, stride: u32) -> Opti
 #[inline(always)]
 pub(crate) fn eight<T, const N: usize>(list: &[T], base: u32, [i, j, k]: [u32; 3]) -> Option<[Run<'_, T, N>; 8]> {
     let (i, j, k) = (i as usize, j as usize, k as usize);
-    let list = window::<T, N>(list, base, i + (j + k))?;
+    // Two addresses, from which the other six are one or two strides: the compiler would keep nine in registers.
+    let list = opaque(window::<T, N>(list, base, i + (j + k))?);
     let [a, b, c, d] = square(list.get(..j + k + N)?, [j, k])?;
-    let [e, f, g, h] = square(list.get(i..)?, [j, k])?;
+    let [e, f, g, h] = square(opaque(list.get(i..)?), [j, k])?;
     Some([a, b, c, d, e, f, g, h])
 }
 

@@ -28,13 +28,15 @@ impl Attitude {
     #[inline]
     #[must_use]
     pub fn new(yaw: f64, roll: f64) -> Self {
-        Self::by(Baseline, yaw, roll)
+        let (attitude, _) = Self::by(Baseline, yaw, roll);
+        attitude
     }
 
+    /// The same, and whether either angle was clamped.
     #[inline(always)]
-    pub(crate) fn by<I: Instructions>(with: I, yaw: f64, roll: f64) -> Self {
-        let [yaw, roll] = Angle::pair(with, Two::new([yaw, roll]));
-        Self { yaw, roll }
+    pub(crate) fn by<I: Instructions>(with: I, yaw: f64, roll: f64) -> (Self, bool) {
+        let ([yaw, roll], limited) = Angle::pair(with, Two::new([yaw, roll]));
+        (Self { yaw, roll }, limited)
     }
 
     /// What the rotation alone displaces the tape-circle point by.

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::axis::AxisName;
+use crate::axis::{AxisName, Bin};
 use crate::channel::{Channel, Slot};
 use crate::pose::Side;
 
@@ -106,7 +106,7 @@ pub enum TableError {
         /// Its bins.
         bins: u16,
     },
-    /// An axis node is not an `f32` number, beyond plausible values, or not above the one before.
+    /// An axis node is no number, beyond plausible values, not above the one before, or lies where no bin begins.
     AxisNode {
         /// The axis.
         axis: AxisName,
@@ -115,23 +115,16 @@ pub enum TableError {
         /// Its value, m or rad.
         value: f32,
     },
-    /// What stands beside an axis node is not the reciprocal of the distance to the next, or 0 beside the last.
-    AxisReciprocal {
-        /// The axis.
-        axis: AxisName,
-        /// The node's index.
-        index: usize,
-        /// What stands beside it, 1/m or 1/rad.
-        found: f64,
-    },
-    /// An axis bin does not lead to the cell its nodes say, or holds two nodes.
+    /// An axis bin says of its cell what nodes and counts do not.
     AxisBin {
         /// The axis.
         axis: AxisName,
         /// The bin's index.
         index: usize,
-        /// The cell it leads to.
-        found: u16,
+        /// What it says.
+        found: Bin,
+        /// What it should say.
+        needed: Bin,
     },
     /// The rigid map divides an axis' intervals into other than 1, 2, 4, 8 or 16 parts.
     Refinement {
@@ -217,13 +210,11 @@ impl fmt::Display for TableError {
             }
             Self::AxisNode { axis, index, value } => write!(
                 f,
-                "{axis} axis: node {index} is {value}, not a number above the node before and within plausible bounds"
+                "{axis} axis: node {index} is {value}, not a number above the node before, within plausible bounds and \
+                 where a bin begins"
             ),
-            Self::AxisReciprocal { axis, index, found } => {
-                write!(f, "{axis} axis: node {index} has the reciprocal {found}, its cell's width says otherwise")
-            }
-            Self::AxisBin { axis, index, found } => {
-                write!(f, "{axis} axis: bin {index} leads to cell {found}, its nodes say otherwise")
+            Self::AxisBin { axis, index, found, needed } => {
+                write!(f, "{axis} axis: bin {index} says {found}, the axis' nodes {needed}")
             }
             Self::Refinement { axis, parts } => {
                 write!(f, "rigid map has {parts} parts in an interval of the {axis} axis, not 1, 2, 4, 8 or 16")

@@ -10,7 +10,7 @@ use crate::pose::{Side, WheelGeometry};
 pub struct AxisCounts {
     /// Nodes, at least 2.
     pub nodes: u16,
-    /// Bins of its search map, 1 to 4096.
+    /// Bins, 1 to 4096.
     pub bins: u16,
 }
 

@@ -1,15 +1,15 @@
 //! Which of the processor's instructions lookups are made of. All give the same bits.
 
+use core::mem::MaybeUninit;
 use core::ops::{Add, Mul, Sub};
 
-use crate::blend::{Cell, LaneScales, Lanes};
+use crate::blend::{Cell, Edges, LaneScales, Lanes};
 use crate::channel::SLOTS;
 use crate::contact::Contact;
-use crate::layout::RECORD;
 use crate::math::{Four, Quad, Two};
 
 #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
-pub(crate) use crate::simd::Avx2;
+pub(crate) use crate::simd::{Avx2, escape, opaque};
 #[cfg(not(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable"))))]
 use crate::{
     channel::CHANNELS,
@@ -18,6 +18,20 @@ use crate::{
     rigid::Coordinates,
     table::ContactTable,
 };
+
+/// Memory that the compiler must take for known to others: what is written to it before a fence is there at the fence.
+#[cfg(not(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable"))))]
+#[inline(always)]
+pub(crate) fn escape<T>(place: &mut T) -> &mut T {
+    core::hint::black_box(place)
+}
+
+/// The same slice, whose address the compiler must take for any.
+#[cfg(not(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable"))))]
+#[inline(always)]
+pub(crate) const fn opaque<T>(list: &[T]) -> &[T] {
+    list
+}
 
 /// Instructions that a table's lookups are made of; every set gives the same bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -53,8 +67,14 @@ pub(crate) trait Instructions: Copy {
     /// Four `f64` that take the same operations.
     type Quad: Quads<Self>;
 
-    /// Blended lanes in their units; none for a cell beyond the records.
-    fn blend(self, records: &[[u8; RECORD]], cell: &Cell<Self::Quad>, scales: &LaneScales) -> Option<Lanes>;
+    /// Blended lanes of a cell's records in their units, written to a place.
+    fn blend<'p>(
+        self,
+        edges: &Edges<'_>,
+        cell: &Cell<Self::Quad>,
+        scales: &LaneScales,
+        place: &'p mut MaybeUninit<Lanes>,
+    ) -> &'p Lanes;
 
     /// The first eight numbers of the slots' contacts, given number by number for all slots, as [`Eight`]s.
     fn transposed(self, numbers: [[Four; 4]; 2]) -> [impl Eight; SLOTS];
@@ -83,16 +103,22 @@ impl Instructions for Baseline {
     type Quad = Quad;
 
     #[inline(always)]
-    fn blend(self, records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales) -> Option<Lanes> {
+    fn blend<'p>(
+        self,
+        edges: &Edges<'_>,
+        cell: &Cell,
+        scales: &LaneScales,
+        place: &'p mut MaybeUninit<Lanes>,
+    ) -> &'p Lanes {
         #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
-        return crate::simd::blend_128(records, cell, scales);
+        return crate::simd::blend_128(edges, cell, scales, place);
         #[cfg(all(target_arch = "arm", not(feature = "portable")))]
-        return crate::arm::blend(records, cell, scales);
+        return crate::arm::blend(edges, cell, scales, place);
         #[cfg(any(
             not(any(target_arch = "arm", all(target_arch = "x86_64", target_feature = "sse2"))),
             feature = "portable"
         ))]
-        return crate::blend::portable(records, cell, scales);
+        return crate::blend::portable(edges, cell, scales, place);
     }
 
     #[inline(always)]

@@ -207,6 +207,13 @@ impl Two {
         (parts, Self(parts.map(f64::from)))
     }
 
+    /// Two little-endian `f32`.
+    #[inline(always)]
+    pub(crate) fn of_singles(bytes: &[u8; 8]) -> Self {
+        let [a, b, c, d, e, f, g, h] = *bytes;
+        Self([[a, b, c, d], [e, f, g, h]].map(|bytes| f64::from(f32::from_le_bytes(bytes))))
+    }
+
     /// Rows as columns.
     #[inline(always)]
     pub(crate) fn transpose([a, b]: [Self; 2]) -> [Self; 2] {
@@ -415,6 +422,9 @@ mod tests {
         let singles = Quad::of_singles(&bytes).halves().map(Two::numbers);
         assert_eq!(singles, simd::Quad::of_singles(&bytes).halves().map(simd::Two::numbers));
         assert_eq!(singles, [[f64::from(3.4_f32), f64::from(-0.2_f32)]; 2]);
+        let pair = bytes.first_chunk().unwrap();
+        assert_eq!(Two::of_singles(pair).numbers(), singles[0]);
+        assert_eq!(simd::Two::of_singles(pair).numbers(), singles[0]);
         assert_eq!(Four::ZERO.numbers(), simd::Four::ZERO.numbers());
         assert_eq!(Two::new([2.0; 2]).numbers(), Two::all(2.0).numbers());
     }

@@ -5,12 +5,13 @@ use core::ops::Range;
 
 use crc::{CRC_32_ISCSI, Crc};
 
+use crate::channel::BLOCK;
 use crate::header::AxisCounts;
 
 /// First bytes of every image.
 pub const MAGIC: [u8; 4] = *b"FWT1";
 /// Version of the format.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 /// Bytes of the magic.
 pub const MAGIC_AT: Range<usize> = 0..4;
 /// Bytes of the format version, `u32`.
@@ -27,12 +28,28 @@ pub const HEADER_AT: usize = 20;
 pub const HEADER_LIMIT: usize = 65_536;
 /// Alignment of the sections from the image's start, bytes.
 pub const ALIGNMENT: usize = 64;
-/// Bytes of an axis node: its coordinate and the reciprocal of the distance to the next, `f64` each.
-pub const NODE: usize = 16;
+/// Bytes of an axis node: its coordinate, `f64`.
+pub const NODE: usize = 8;
+/// Bytes of an axis bin: two `f32` and two `u32`, see [`Bin`](crate::Bin).
+pub const BIN: usize = 16;
 /// Bytes of a rigid contact: roll and the three coefficients of the height, `f32` each.
 pub const RIGID: usize = 16;
 /// Bytes of a record.
 pub const RECORD: usize = 64;
+
+/// Where a block of four lanes lies in a record, in blocks, or which one lies there: of each four the middle two change
+/// places. Two records unpacked by vectors of 256 bits, which works within their halves, then have the channels' order.
+#[must_use]
+pub const fn stored_block(block: usize) -> usize {
+    block & !3 | (block & 1) << 1 | block >> 1 & 1
+}
+
+/// Where a lane lies in a record, in lanes, or which one lies there.
+#[must_use]
+#[expect(clippy::arithmetic_side_effects, reason = "a block has lanes")]
+pub const fn stored(lane: usize) -> usize {
+    BLOCK * stored_block(lane / BLOCK) + lane % BLOCK
+}
 
 /// CRC-32C (Castagnoli, as in iSCSI) over the whole image but the checksum's own four bytes.
 #[must_use]
@@ -53,13 +70,24 @@ pub struct SideSections {
     pub records: Range<usize>,
 }
 
+/// Bytes from one node of an axis to the next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Strides {
+    /// In the records.
+    pub records: u32,
+    /// In the rigid map; 0 on the axes that it does not have.
+    pub rigid: u32,
+}
+
 /// All sections of an image, as byte ranges.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Sections {
+    /// Bins of the four axes, [`BIN`] bytes each, of each axis the last one twice.
+    pub bins: [Range<usize>; 4],
     /// Nodes of the four axes, [`NODE`] bytes each.
     pub nodes: [Range<usize>; 4],
-    /// `u16` search maps of the four axes.
-    pub bins: [Range<usize>; 4],
+    /// Distances from node to node of the four axes.
+    pub strides: [Strides; 4],
     /// Right and left side.
     pub sides: [SideSections; 2],
     /// Zero bytes that align the sections: before the axes, before each side's rigid map and its records.
@@ -96,6 +124,20 @@ pub fn refined(nodes: usize, parts: u8) -> usize {
     nodes.saturating_sub(1).saturating_mul(usize::from(parts)).saturating_add(1)
 }
 
+/// Bytes of so many elements; none beyond 4 GiB.
+fn stride(size: usize, counts: &[usize]) -> Option<u32> {
+    let bytes = counts.iter().try_fold(size, |product, n| product.checked_mul(*n))?;
+    u32::try_from(bytes).ok()
+}
+
+/// Bytes from one node of the records' axes, lateral and yaw, to the next in a rigid map that divides their intervals so;
+/// none beyond 4 GiB.
+#[must_use]
+pub fn rigid_strides([lateral_parts, yaw_parts]: [u8; 2], yaw_nodes: usize) -> Option<[u32; 2]> {
+    let row = refined(yaw_nodes, yaw_parts);
+    Some([stride(RIGID, &[lateral_parts.into(), row])?, stride(RIGID, &[yaw_parts.into()])?])
+}
+
 impl Sections {
     /// Sections for a header of this length with these axes, the rigid map's parts of an interval of the first two, and
     /// one or two sides; none beyond 4 GiB.
@@ -108,11 +150,11 @@ impl Sections {
         let (rigid_lateral, rigid_yaw) = (refined(lateral, lateral_parts), refined(yaw, yaw_parts));
         let [axes_gap, right_map_gap, right_records_gap, left_map_gap, left_records_gap] = &mut sections.padding;
         *axes_gap = cursor.align();
+        for (range, axis) in sections.bins.iter_mut().zip(axes) {
+            *range = cursor.take(BIN, &[usize::from(axis.bins).saturating_add(1)]);
+        }
         for (range, axis) in sections.nodes.iter_mut().zip(axes) {
             *range = cursor.take(NODE, &[usize::from(axis.nodes)]);
-        }
-        for (range, axis) in sections.bins.iter_mut().zip(axes) {
-            *range = cursor.take(size_of::<u16>(), &[usize::from(axis.bins)]);
         }
         let gaps = [(right_map_gap, right_records_gap), (left_map_gap, left_records_gap)];
         for (side, (map_gap, records_gap)) in sections.sides.iter_mut().zip(gaps).take(sides) {
@@ -122,6 +164,12 @@ impl Sections {
             side.records = cursor.take(RECORD, &[lateral, yaw, roll, vertical]);
         }
         sections.total = cursor.0?;
+        let records = [&[yaw, roll, vertical][..], &[roll, vertical], &[vertical], &[]];
+        let [rigid_lateral, rigid_yaw] = rigid_strides(refinement, yaw)?;
+        let rigid = [rigid_lateral, rigid_yaw, 0, 0];
+        for ((strides, counts), rigid) in sections.strides.iter_mut().zip(records).zip(rigid) {
+            *strides = Strides { records: stride(RECORD, counts)?, rigid };
+        }
         Some(sections)
     }
 }
@@ -138,20 +186,23 @@ mod tests {
     fn sections_follow_each_other_aligned() {
         let s = Sections::new(100, &counts([2, 2, 2, 3]), [2, 1], 2).unwrap();
         assert_eq!(s.padding[0], 120..128);
-        assert_eq!(s.nodes[0], 128..160);
-        assert_eq!(s.nodes[3], 224..272);
-        assert_eq!(s.bins[3], 278..280);
-        assert_eq!(s.padding[1], 280..320);
-        assert_eq!(s.sides[0], SideSections { rigid: 320..416, records: 448..1984 });
-        assert_eq!(s.sides[1].records, 2112..3648);
-        assert_eq!(s.total, 3648);
-        assert_eq!(Sections::new(100, &counts([2, 2, 2, 3]), [2, 1], 1).unwrap().total, 1984);
+        assert_eq!(s.bins[0], 128..160);
+        assert_eq!(s.bins[3], 224..256);
+        assert_eq!(s.nodes[0], 256..272);
+        assert_eq!(s.nodes[3], 304..328);
+        assert_eq!(s.padding[1], 328..384);
+        let strides = |records, rigid| Strides { records, rigid };
+        assert_eq!(s.strides, [strides(768, 64), strides(384, 16), strides(192, 0), strides(64, 0)]);
+        assert_eq!(s.sides[0], SideSections { rigid: 384..480, records: 512..2048 });
+        assert_eq!(s.sides[1].records, 2176..3712);
+        assert_eq!(s.total, 3712);
+        assert_eq!(Sections::new(100, &counts([2, 2, 2, 3]), [2, 1], 1).unwrap().total, 2048);
     }
 
     #[test]
     fn order_of_the_padding() {
         let s = Sections::new(100, &counts([2, 2, 2, 3]), [2, 1], 2).unwrap();
-        assert_eq!(s.padding, [120..128, 280..320, 416..448, 1984..1984, 2080..2112]);
+        assert_eq!(s.padding, [120..128, 328..384, 480..512, 2048..2048, 2144..2176]);
     }
 
     #[test]

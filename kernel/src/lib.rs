@@ -108,7 +108,7 @@ mod rigid;
 mod simd;
 mod table;
 
-pub use axis::{Axis, AxisName, MAX_BINS, NodeBytes, Place, bin_start};
+pub use axis::{Axis, AxisName, Bin, BinBytes, MAX_BINS, NodeBytes, Place, bin_start};
 pub use channel::{CHANNELS, CONFORMAL_LANE, Channel, LANES, RESERVED_LANE, SLOTS, Scale, Scales, Slot};
 pub use contact::{Contact, Contacts};
 pub use displacement::{Attitude, Displacement, displacement, pose_with};

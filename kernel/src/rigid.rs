@@ -5,7 +5,7 @@ use crate::corners::two;
 use crate::displacement::{Displacement, pose_with};
 use crate::header::MAX_PARTS;
 use crate::instructions::{Baseline, Instructions, Quads};
-use crate::layout::{RIGID, refined};
+use crate::layout::{RIGID, refined, rigid_strides};
 use crate::math::{Two, at_least, at_most};
 use crate::pose::{Pose, WheelGeometry};
 
@@ -32,13 +32,14 @@ pub struct RigidMap<'a> {
     /// First and last roll offset, rad.
     roll_offset: [f64; 2],
     parts: Parts,
-    /// Nodes from one lateral node to the next.
+    /// Bytes from one lateral node to the next.
     row: u32,
-    nodes: &'a [[u8; RIGID]],
+    /// A whole number of them.
+    nodes: &'a [u8],
 }
 
 /// Nodes for a cell that a checked map does not have.
-const NOTHING: &[[u8; RIGID]; 2] = &[[0; RIGID]; 2];
+const NOTHING: &[u8; 2 * RIGID] = &[0; 2 * RIGID];
 
 /// Parts that the intervals of two axes are divided into. Aligned as [`AxisPair`] is.
 #[derive(Clone, Copy)]
@@ -47,38 +48,39 @@ struct Parts {
     numbers: [f64; 2],
     /// One less: the last part.
     last: [f64; 2],
-    counts: [u32; 2],
 }
 
 impl Parts {
     fn new(counts: [u8; 2]) -> Self {
         let numbers = counts.map(f64::from);
-        Self { counts: counts.map(u32::from), numbers, last: numbers.map(|n| n - 1.0) }
+        Self { numbers, last: numbers.map(|n| n - 1.0) }
     }
 
-    /// Cell of the map and the fractions in it from those of the records, n parts of an interval each:
+    /// Parts of the records' cells and the fractions in them from those in the cells, n parts of an interval each:
     ///
     /// ```text
     /// part     = min(floor(n t), n - 1)
-    /// cell     = n cell + part
     /// fraction = n t - part
     /// ```
     ///
     /// Exact, since n is a power of two.
     #[inline(always)]
-    fn of(&self, [a, b]: [u32; 2], fraction: Two) -> ([u32; 2], Two) {
+    fn of(&self, fraction: Two) -> ([u32; 2], Two) {
         let position = fraction * Two::new(self.numbers);
-        let ([part_a, part_b], part) = position.at_most(Two::new(self.last)).integer_parts();
-        let [n_a, n_b] = self.counts;
-        ([n_a * a + part_a, n_b * b + part_b], position - part)
+        let (parts, whole) = position.at_most(Two::new(self.last)).integer_parts();
+        (parts, position - whole)
     }
 }
 
 impl core::fmt::Debug for RigidMap<'_> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.debug_struct("RigidMap").field("nodes", &self.nodes.len()).field("row", &self.row).finish_non_exhaustive()
+        f.debug_struct("RigidMap").field("bytes", &self.nodes.len()).field("row", &self.row).finish_non_exhaustive()
     }
 }
+
+/// Bytes of a rigid contact as `u32`.
+const RIGID_BYTES: u32 = 16;
+const _: () = assert!(RIGID_BYTES as usize == RIGID);
 
 /// a + t (b - a)
 #[inline(always)]
@@ -100,27 +102,30 @@ impl<'a> RigidMap<'a> {
     pub(crate) const EMPTY: Self = Self {
         plane: AxisPair::EMPTY,
         roll_offset: [0.0; 2],
-        parts: Parts { numbers: [0.0; 2], last: [0.0; 2], counts: [0; 2] },
+        parts: Parts { numbers: [0.0; 2], last: [0.0; 2] },
         row: 0,
         nodes: &[],
     };
 
     /// A map over nodes of four little-endian `f32`, `[lateral][yaw]`: the rigid roll in rad, and h0, h1, h2 of the rigid
     /// height in m, m/rad, m/rad². The axes are lateral, yaw and roll offset; the intervals of the first two are divided
-    /// evenly into parts. None if the length does not fit, or an interval has other than 1, 2, 4, 8 or 16 parts.
+    /// evenly into parts. None if the length or what the axes' bins say does not fit, or an interval has other than 1, 2, 4,
+    /// 8 or 16 parts.
     #[must_use]
     pub fn new(axes: [Axis<'a>; 3], refinement: [u8; 2], nodes: &'a [[u8; RIGID]]) -> Option<Self> {
         let [lateral, yaw, roll_offset] = axes;
         let [lateral_parts, yaw_parts] = refinement;
         let (rows, row) = (refined(lateral.len(), lateral_parts), refined(yaw.len(), yaw_parts));
-        let fits = refinement.iter().all(|parts| parts.is_power_of_two() && *parts <= MAX_PARTS)
+        let strides = rigid_strides(refinement, yaw.len())?;
+        let fits = [lateral, yaw].map(|axis| axis.strides().rigid) == strides
+            && refinement.iter().all(|parts| parts.is_power_of_two() && *parts <= MAX_PARTS)
             && nodes.len() == rows.checked_mul(row)?;
         fits.then_some(Self {
             plane: AxisPair::new([lateral, yaw]),
             roll_offset: roll_offset.range().into(),
             parts: Parts::new(refinement),
-            row: u32::try_from(row).ok()?,
-            nodes,
+            row: u32::try_from(row.checked_mul(RIGID)?).ok()?,
+            nodes: nodes.as_flattened(),
         })
     }
 
@@ -133,12 +138,15 @@ impl<'a> RigidMap<'a> {
     /// Bilinear between the nodes around a place.
     #[inline(always)]
     fn contact<I: Instructions>(&self, with: I, places: &Places) -> RigidContact {
-        let ([lateral, yaw], fractions) = self.parts.of(places.cells, places.fraction);
+        let ([lateral, yaw], fractions) = self.parts.of(places.fraction);
         let [u, psi] = fractions.numbers();
+        let base = places.rigid + (lateral * self.row + yaw * RIGID_BYTES);
         // Every cell of a checked map has its corners.
-        let corners = two(self.nodes, lateral * self.row + yaw, self.row).unwrap_or([NOTHING; 2]);
+        let [low, high] = two(self.nodes, base, self.row).unwrap_or([NOTHING; 2]);
         // Not by `map` of arrays, which a build without link-time optimisation may call instead of inlining.
-        let [[a, b], [c, d]] = corners;
+        let (Some([a, b]), Some([c, d])) = (low.as_chunks().0.first_chunk(), high.as_chunks().0.first_chunk()) else {
+            return RigidContact { roll_and_height: Two::all(0.0), slopes: Two::all(0.0) };
+        };
         let node = |bytes| I::Quad::of_singles(with, bytes);
         let along = |low, high| lerp(with, node(low), node(high), u);
         let [roll_and_height, slopes] = lerp(with, along(a, c), along(b, d), psi).halves();

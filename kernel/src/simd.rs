@@ -3,7 +3,7 @@
 //!
 //! An intrinsic is unsafe to call because its instruction might not exist. Here each of them does: the module is
 //! compiled only where the whole program may use SSE2, and whoever calls for AVX2 has an [`Avx2`] to show. Only
-//! the loads and the prefetch take pointers, and those are made from references to as many bytes as they read.
+//! loads, stores and the prefetch take pointers, and those are made from references to as many bytes as they touch.
 
 mod avx2;
 mod blend;
@@ -27,7 +27,7 @@ pub(crate) struct Four(__m128);
 pub(crate) struct Two(__m128d);
 
 // SAFETY of every block up to the end of this file: the instructions are SSE2's, and this module is compiled only where the
-// whole program may use SSE2. Only the load and the prefetch touch memory, see there.
+// whole program may use SSE2. Only loads and the prefetch touch memory, see there.
 impl Four {
     /// Four zeros.
     // SAFETY: any sixteen bytes are four `f32`.
@@ -211,6 +211,12 @@ impl Two {
     }
 
     #[inline(always)]
+    pub(crate) fn of_singles(bytes: &[u8; 8]) -> Self {
+        // The pointer is that of eight bytes, and the load asks for no alignment.
+        Self(unsafe { _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64(bytes.as_ptr().cast()))) })
+    }
+
+    #[inline(always)]
     pub(crate) fn transpose([a, b]: [Self; 2]) -> [Self; 2] {
         unsafe { [Self(_mm_unpacklo_pd(a.0, b.0)), Self(_mm_unpackhi_pd(a.0, b.0))] }
     }
@@ -256,6 +262,33 @@ impl Div for Two {
     #[inline(always)]
     fn div(self, other: Self) -> Self {
         Self(unsafe { _mm_div_pd(self.0, other.0) })
+    }
+}
+
+/// Memory that the compiler must take for known to others: what is written to it before a fence is there at the fence.
+/// As `black_box` of a reference, which would be written to memory itself.
+#[inline(always)]
+pub(crate) fn escape<T>(place: &mut T) -> &mut T {
+    // SAFETY: no instruction at all.
+    #[cfg(not(miri))]
+    unsafe {
+        core::arch::asm!("/* {} */", in(reg) core::ptr::from_mut(place), options(nostack, preserves_flags));
+    }
+    place
+}
+
+/// The same slice, whose address the compiler must take for any: it keeps it in a register.
+#[inline(always)]
+#[cfg_attr(not(miri), expect(clippy::pointers_in_nomem_asm_block, reason = "no instruction at all"))]
+pub(crate) fn opaque<T>(list: &[T]) -> &[T] {
+    #[cfg(miri)]
+    return list;
+    // SAFETY: no instruction at all, so the address is the slice's.
+    #[cfg(not(miri))]
+    unsafe {
+        let mut start = list.as_ptr();
+        core::arch::asm!("/* {} */", inout(reg) start, options(nomem, nostack, preserves_flags, pure));
+        core::slice::from_raw_parts(start, list.len())
     }
 }
 

@@ -1,11 +1,11 @@
 //! The contact table: checked once, then every lookup is infallible and costs the same.
 
 use core::fmt;
-use core::hint::black_box;
 use core::mem::MaybeUninit;
+use core::sync::atomic::{Ordering, compiler_fence};
 
 use crate::axis::{Axis, AxisName, AxisPair, Places};
-use crate::blend::{Cell, LaneScales, Lanes, RECORD_BYTES, edges};
+use crate::blend::{Cell, LaneScales, Lanes, edges};
 use crate::channel::{CHANNELS, CONFORMAL_LANE, Channel, LANES, SLOTS, Slot};
 use crate::check;
 use crate::contact::{Contacts, Frame, Wheel};
@@ -13,10 +13,10 @@ use crate::displacement::{Attitude, Displacement, displacement};
 use crate::error::TableError;
 use crate::flags::Flags;
 use crate::header::{Header, SideHeader};
-use crate::instructions::{Avx2, Baseline, InstructionSet, Instructions};
+use crate::instructions::{Avx2, Baseline, InstructionSet, Instructions, escape};
 use crate::layout::{RECORD, Sections, SideSections};
 use crate::math::Two;
-use crate::pose::{Canonical, Pose, Side, WheelGeometry};
+use crate::pose::{Pose, Side, WheelGeometry};
 use crate::rigid::{Coordinates, RigidMap};
 
 /// A contact table, read in place from a borrowed image.
@@ -42,16 +42,17 @@ struct SideData<'a> {
     geometry: WheelGeometry,
     wheel: Wheel,
     rigid: RigidMap<'a>,
-    records: &'a [[u8; RECORD]],
+    /// A whole number of them.
+    records: &'a [u8],
     scales: LaneScales,
 }
 
-/// Where a pose lies in the table: all but its height.
+/// Where a pose lies in the table.
 struct Located {
     valid: bool,
-    canonical: Canonical,
-    attitude: Attitude,
-    displacement: Displacement,
+    /// Whether yaw or roll was limited.
+    limited: bool,
+    frame: Frame,
     coordinates: Coordinates,
     /// The places of lateral and yaw.
     plane: Places,
@@ -59,7 +60,7 @@ struct Located {
 
 /// A lookup before its records are read.
 struct Prepared<Q> {
-    located: Located,
+    frame: Frame,
     cell: Cell<Q>,
     flags: Flags,
 }
@@ -135,9 +136,8 @@ impl<'a> ContactTable<'a> {
             }
         }
         *section = AxisPair::new([*roll, *vertical]);
-        let records = [yaw.len() * roll.len() * vertical.len(), roll.len() * vertical.len(), vertical.len()];
-        // Sections are below 4 GiB, so strides fit.
-        *strides = records.map(|stride| u32::try_from(stride).unwrap_or_default().wrapping_mul(RECORD_BYTES));
+        let [of_lateral, of_yaw, of_roll, _] = sections.strides;
+        *strides = [of_lateral, of_yaw, of_roll].map(|strides| strides.records);
         Ok(())
     }
 
@@ -205,7 +205,7 @@ impl<'a> ContactTable<'a> {
     pub fn node_record(&self, side: Side, node: [usize; 4]) -> Option<[i16; LANES]> {
         let counts = self.counts();
         let index = node.iter().zip(counts).try_fold(0, |index, (i, n)| (*i < n).then_some(index * n + i))?;
-        self.side(side).records.get(index).map(check::lanes)
+        self.side(side).records.as_chunks().0.get(index).map(check::lanes)
     }
 
     /// The channels at coordinates of the table, `[slot][channel]`, in the units of [`Channel`].
@@ -228,7 +228,9 @@ impl<'a> ContactTable<'a> {
         let side = self.side(side);
         let plane = side.rigid.plane(at.lateral, at.yaw);
         let (cell, _) = self.cell(with, &plane, at);
-        with.blend(side.records, &cell, &side.scales).map_or([[0.0; CHANNELS]; SLOTS], |lanes| slots(&lanes))
+        let edges = edges(side.records, &cell);
+        let blend = |edges| slots(with.blend(&edges, &cell, &side.scales, &mut MaybeUninit::uninit()));
+        edges.map_or([[0.0; CHANNELS]; SLOTS], blend)
     }
 
     /// Asks for the sixteen records of a pose, so that they are in the cache when the lookup comes, while the caller
@@ -236,7 +238,9 @@ impl<'a> ContactTable<'a> {
     /// in-order core waits for that, and then a lookup alone is the better choice.
     #[inline]
     pub fn prefetch(&self, side: Side, pose: &Pose) {
-        self.prefetch_cell(side, &self.prepare(Baseline, side, pose).cell);
+        let located = self.locate(Baseline, side, pose);
+        let (cell, _) = self.cell(Baseline, &located.plane, &located.coordinates);
+        self.prefetch_cell(side, &cell);
     }
 
     #[inline(always)]
@@ -288,60 +292,61 @@ impl<'a> ContactTable<'a> {
     /// [`ContactTable::contacts_into`] by these instructions, which the caller was compiled for.
     #[inline(always)]
     pub(crate) fn look_up<I: Instructions>(&self, with: I, side: Side, pose: &Pose, contacts: &mut Contacts) {
-        self.finish(with, side, &self.prepare(with, side, pose), contacts);
+        let mut memory = (MaybeUninit::uninit(), MaybeUninit::uninit());
+        let (frame, lanes) = escape(&mut memory);
+        let located = self.locate(with, side, pose);
+        let frame = frame.write(located.frame);
+        compiler_fence(Ordering::SeqCst);
+        let (cell, axes) = self.cell(with, &located.plane, &located.coordinates);
+        let flags = located.remarks(axes);
+        self.finish(with, side, (frame, &cell, flags), lanes, contacts);
     }
 
     /// [`ContactTable::contacts_many`] in the same way.
     #[inline(always)]
     pub(crate) fn look_up_many<I: Instructions>(&self, with: I, wheels: &[(Side, Pose)], contacts: &mut [Contacts]) {
+        let mut memory = MaybeUninit::uninit();
+        let lanes = escape(&mut memory);
         let mut contacts = contacts.iter_mut();
-        let mut ahead = heapless::Deque::<_, AHEAD>::new();
+        let mut ahead = heapless::Deque::<(Side, Prepared<I::Quad>), AHEAD>::new();
         for (side, pose) in wheels.iter().take(contacts.len()) {
             if ahead.is_full()
                 && let (Some((side, one)), Some(contacts)) = (ahead.pop_front(), contacts.next())
             {
-                self.finish(with, side, &one, contacts);
+                self.finish(with, side, (&one.frame, &one.cell, one.flags), lanes, contacts);
             }
-            let one = self.prepare(with, *side, pose);
-            self.prefetch_cell(*side, &one.cell);
+            let located = self.locate(with, *side, pose);
+            let (cell, axes) = self.cell(with, &located.plane, &located.coordinates);
+            self.prefetch_cell(*side, &cell);
+            let flags = located.remarks(axes);
             // There is room.
-            let _ = ahead.push_back((*side, one));
+            let _ = ahead.push_back((*side, Prepared { frame: located.frame, cell, flags }));
         }
         for ((side, one), contacts) in ahead.iter().zip(contacts) {
-            self.finish(with, *side, one, contacts);
+            self.finish(with, *side, (&one.frame, &one.cell, one.flags), lanes, contacts);
         }
     }
 
-    /// All of a lookup before the records are read.
+    /// All of a lookup from the records on.
     #[inline(always)]
-    fn prepare<I: Instructions>(&self, with: I, side: Side, pose: &Pose) -> Prepared<I::Quad> {
-        let located = self.locate(with, side, pose);
-        let (cell, flags) = self.cell(with, &located.plane, &located.coordinates);
-        Prepared { located, cell, flags }
-    }
-
-    /// The rest of it.
-    #[inline(always)]
-    fn finish<I: Instructions>(&self, with: I, side: Side, prepared: &Prepared<I::Quad>, contacts: &mut Contacts) {
+    fn finish<I: Instructions>(
+        &self,
+        with: I,
+        side: Side,
+        (frame, cell, flags): (&Frame, &Cell<I::Quad>, Flags),
+        lanes: &mut MaybeUninit<Lanes>,
+        contacts: &mut Contacts,
+    ) {
         let data = self.side(side);
-        let Prepared { located, cell, flags } = prepared;
-        // Through memory that the compiler cannot see through: it would interleave the blend's parts with what follows,
-        // and spill more registers than it saves.
-        let Some(lanes) = with.blend(data.records, cell, &data.scales) else { return *contacts = Contacts::NONE };
-        let lanes = black_box(&lanes);
-        let frame = Frame {
-            wheel: &data.wheel,
-            longitudinal_sign: located.canonical.longitudinal_sign,
-            attitude: &located.attitude,
-            place: [located.displacement.lateral + data.geometry.lateral_position, located.displacement.vertical],
-            arm: data.geometry.lateral_position - located.attitude.inwards(&data.geometry),
-        };
-        let force = contacts.fill(with, lanes, &frame, located.valid);
+        // Before the blend, which wants all registers.
+        contacts.flags = flags;
+        // Every cell of a checked table has its records.
+        let Some(edges) = edges(data.records, cell) else { return *contacts = Contacts::NONE };
+        let lanes = with.blend(&edges, cell, &data.scales, lanes);
+        let force = contacts.fill(with, lanes, &data.wheel, frame, flags != Flags::INVALID_INPUT);
         let conformal = lanes.0.get(CONFORMAL_LANE).copied().unwrap_or_default();
-        let remarks = *flags
-            | Flags::ANGLE_LIMITED.when(located.attitude.yaw.limited | located.attitude.roll.limited)
-            | Flags::CONFORMAL.when((conformal > 0.0) & force);
-        contacts.flags = remarks.when(located.valid) | Flags::INVALID_INPUT.when(!located.valid);
+        // Above zero, as an integer's bits would be.
+        contacts.flags |= Flags::CONFORMAL.when((conformal.to_bits().cast_signed() > 0) & force);
     }
 
     fn counts(&self) -> [usize; 4] {
@@ -353,18 +358,29 @@ impl<'a> ContactTable<'a> {
         let data = self.side(side);
         // An invalid pose costs the same: what is no number is limited like any other.
         let (canonical, valid) = (pose.mirrored(data.sign), pose.is_valid());
-        let attitude = Attitude::by(with, canonical.pose.yaw, canonical.pose.roll);
+        let (attitude, limited) = Attitude::by(with, canonical.pose.yaw, canonical.pose.roll);
         let displacement = Displacement::new(&data.geometry, &canonical.pose, &attitude);
         let (coordinates, plane) = data.rigid.locate(with, &displacement, attitude.yaw.value, attitude.roll.value);
-        Located { valid, canonical, attitude, displacement, coordinates, plane }
+        let frame = Frame::new(&data.geometry, &attitude, &displacement, canonical.longitudinal_sign);
+        Located { valid, limited, frame, coordinates, plane }
     }
 
+    /// The cell, and the axes that its place is clamped to.
     #[inline(always)]
     fn cell<I: Instructions>(&self, with: I, plane: &Places, at: &Coordinates) -> (Cell<I::Quad>, Flags) {
         let section = self.section.locate(Two::new([at.roll_offset, at.vertical]));
         // The flags of the four axes are the lowest four bits, in the axes' order.
-        let flags = Flags::of_axes(plane.clamped | section.clamped << 2);
-        (Cell::new(with, plane, &section, self.strides), flags)
+        let axes = Flags::of_axes(plane.clamped | section.clamped << 2);
+        (Cell::new(with, plane, &section, self.strides), axes)
+    }
+}
+
+impl Located {
+    /// Remarks about the pose, given those about the axes.
+    #[inline(always)]
+    fn remarks(&self, axes: Flags) -> Flags {
+        let remarks = axes | Flags::ANGLE_LIMITED.when(self.limited);
+        remarks.when(self.valid) | Flags::INVALID_INPUT.when(!self.valid)
     }
 }
 
@@ -400,7 +416,7 @@ impl<'a> SideData<'a> {
         // The section was laid out for it, and ends with the image.
         let length = image.len();
         self.rigid = rigid.ok_or(TableError::Sections { needed: Some(length), length })?;
-        self.records = check::records(image, &place.records)?;
+        self.records = check::records(image, &place.records)?.as_flattened();
         self.geometry = header.geometry;
         self.turn(side);
         self.scales.fill(&header.scales);

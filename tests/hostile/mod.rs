@@ -2,8 +2,10 @@
 //! (`fuzz/fuzz_targets/table.rs`) and of the property tests in `tests/kernel_hostile.rs`.
 #![allow(dead_code, unreachable_pub, reason = "each user takes a part of this")]
 
-use flangeway::layout::{ALIGNMENT, HEADER_AT, Sections, checksum};
-use flangeway::{Channel, ContactTable, Contacts, Header, InstructionSet, Pose, Scale, Side, Slot};
+use flangeway::layout::{ALIGNMENT, BIN, HEADER_AT, Sections, checksum};
+use flangeway::{
+    Bin, Channel, ContactTable, Contacts, Header, InstructionSet, MAX_BINS, Pose, Scale, Side, Slot, bin_start,
+};
 
 /// The made-up table that damage begins with.
 static INTACT: &[u8] = include_bytes!("../gates/three_contacts.fwt");
@@ -68,6 +70,9 @@ pub fn body(data: &[u8]) -> bool {
     for _ in 0..1 + input.below(4) {
         damage(&mut image, &mut input);
     }
+    if input.byte().is_multiple_of(2) {
+        mend_bins(&mut image);
+    }
     look_up(&with_good_envelope(image), &mut input)
 }
 
@@ -75,7 +80,7 @@ pub fn body(data: &[u8]) -> bool {
 pub fn with_good_envelope(mut image: Vec<u8>) -> Vec<u8> {
     if image.len() >= HEADER_AT {
         let length = u32::try_from(image.len()).unwrap_or(u32::MAX).to_le_bytes();
-        image[..8].copy_from_slice(b"FWT1\x01\0\0\0");
+        image[..8].copy_from_slice(b"FWT1\x02\0\0\0");
         image[8..12].copy_from_slice(&length);
         let crc = checksum(&image).to_le_bytes();
         image[12..16].copy_from_slice(&crc);
@@ -110,14 +115,18 @@ fn damage(image: &mut Vec<u8>, input: &mut Input<'_>) {
         4 => {
             let at = place(&sections.nodes[input.below(4)], 8, input);
             let near = image.get(at..).and_then(<[u8]>::first_chunk).map_or(0.0, |bytes| f64::from_le_bytes(*bytes));
-            // An end is an `f32`; other nodes and reciprocals are not.
+            // An end is an `f32`; other nodes are not.
             let value = input.number(near);
             let value = if input.byte().is_multiple_of(2) { value } else { f64::from(value as f32) };
             put(image, at, &value.to_le_bytes());
         }
         5 => {
-            let at = place(&sections.bins[input.below(4)], 2, input);
-            put(image, at, &input.bytes::<2>());
+            let at = place(&sections.bins[input.below(4)], 4, input);
+            if input.byte().is_multiple_of(2) {
+                put_single(image, at, input)
+            } else {
+                put(image, at, &input.bytes::<4>())
+            }
         }
         6 => {
             let at = place(&sections.sides[0].rigid, 4, input);
@@ -131,6 +140,32 @@ fn damage(image: &mut Vec<u8>, input: &mut Input<'_>) {
                 put(image, at + 2 * i, &value.to_le_bytes());
             }
         }
+    }
+}
+
+/// Makes the bins what nodes and counts say, as a table is not taken else: damage to those is seen beyond them.
+fn mend_bins(image: &mut [u8]) {
+    let Some((header, sections)) = parsed(image) else { return };
+    let places = sections.bins.iter().zip(&sections.nodes).zip(sections.strides).zip(header.axes);
+    let mut mended = Vec::new();
+    for (((bins, nodes), strides), counts) in places {
+        let nodes = image.get(nodes.clone()).unwrap_or_default().as_chunks().0;
+        let nodes: Vec<f64> = nodes.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
+        let ([first, inner @ .., last], count) = (nodes.as_slice(), usize::from(counts.bins)) else { continue };
+        if count > MAX_BINS {
+            continue;
+        }
+        let begins = |bin: &usize| *bin == 0 || inner.contains(&bin_start(*first, *last, count, *bin));
+        let starts: Vec<usize> = (0..count).filter(begins).chain([count]).collect();
+        let cells = starts.windows(2).enumerate().flat_map(|(cell, ends)| {
+            std::iter::repeat_n(Bin::new(cell, ends[0], ends[1] - ends[0], strides).to_bytes(), ends[1] - ends[0])
+        });
+        let mut bytes: Vec<[u8; BIN]> = cells.collect();
+        bytes.extend(bytes.last().copied());
+        mended.push((bins.start, bytes));
+    }
+    for (at, bytes) in mended {
+        put(image, at, bytes.as_flattened());
     }
 }
 

@@ -103,7 +103,9 @@ impl Search {
         let table = compiler.assemble(axes, NodeValues::Sampled)?;
         let errors = trial::errors(&table.image, &self.trials)?;
         let (score, figures) = trial::score(&errors);
-        Ok(Candidate { axes: table.axes, bytes: table.image.len() as f64, errors, score, p95: figures.p95 })
+        // Not the bins: halving the finest interval doubles them, once, for all that is halved as finely later.
+        let bytes = table.axes.bytes_at_nodes(self.sides) as f64;
+        Ok(Candidate { axes: table.axes, bytes, errors, score, p95: figures.p95 })
     }
 
     /// Whether a table of these axes meets the error target.
@@ -185,7 +187,7 @@ impl Search {
         };
         let weights: Vec<f64> = now.errors.iter().map(|&error| weight(error)).collect();
         let blame = self.blame(nodes, direction, &weights);
-        // Halves too narrow for the kernel's search map are left alone.
+        // Halves too narrow for the kernel's bins are left alone.
         let narrowest = (nodes[nodes.len() - 1] - nodes[0]) / (BINS_A_NODE * nodes.len()) as f64;
         let mut order: Vec<usize> = (0..blame.len()).filter(|&i| 0.5 * (nodes[i + 1] - nodes[i]) > narrowest).collect();
         order.sort_by(|&a, &b| blame[b].total_cmp(&blame[a]).then(a.cmp(&b)));

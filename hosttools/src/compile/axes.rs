@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use flangeway::bin_start;
+use flangeway::layout::{BIN, NODE, RECORD, RIGID};
+use flangeway::{AxisName, bin_start};
 
 use crate::error::{Error, Result};
 use crate::image::OwnedAxis;
@@ -127,19 +128,30 @@ impl Axes {
 
     /// Upper bound of the bytes of a table with these axes.
     pub(super) fn bytes(&self, sides: usize) -> usize {
+        let nodes: usize = self.all().iter().map(|nodes| nodes.len()).sum();
+        let axes = NODE * nodes + BIN * (self.bins().unwrap_or(BINS_A_NODE * nodes) + AxisName::ALL.len());
+        OVERHEAD + axes + self.bytes_at_nodes(sides)
+    }
+
+    /// Bytes of what stands at the nodes: records and rigid map.
+    pub(super) fn bytes_at_nodes(&self, sides: usize) -> usize {
         let [lateral, yaw] = self.rigid.each_ref().map(Vec::len);
-        let map = flangeway::layout::RIGID * lateral * yaw;
-        let axes: usize =
-            self.all().iter().map(|nodes| (flangeway::layout::NODE + 2 * BINS_A_NODE) * nodes.len()).sum();
-        OVERHEAD + axes + sides * (map + flangeway::layout::RECORD * self.nodes())
+        sides * (RIGID * lateral * yaw + RECORD * self.nodes())
     }
 
     /// Whether the kernel's constant-time search takes these axes: bins that part all nodes, and not too many.
     pub(super) fn searchable(&self) -> bool {
-        flangeway::AxisName::ALL
-            .into_iter()
-            .zip(self.all())
-            .all(|(name, nodes)| OwnedAxis::new(name, nodes).is_ok_and(|axis| axis.bins() <= BINS_A_NODE * nodes.len()))
+        self.bins().is_some()
+    }
+
+    /// Bins of all axes; none if there are none that part all nodes, or too many.
+    fn bins(&self) -> Option<usize> {
+        let axes = AxisName::ALL.into_iter().zip(self.all());
+        let bins = axes.map(|(name, nodes)| {
+            let bins = OwnedAxis::new(name, nodes).ok()?.bins();
+            (bins <= BINS_A_NODE * nodes.len()).then_some(bins)
+        });
+        bins.sum()
     }
 
     /// Nodes of the rigid map: lateral, yaw, every interval of the records' axes divided by [`REFINEMENT`]. The image does
@@ -155,7 +167,7 @@ impl Axes {
     }
 }
 
-/// Most bins of the search map for each node that refinement may ask for.
+/// Most bins for each node that refinement may ask for.
 pub(super) const BINS_A_NODE: usize = 16;
 
 /// Each interval divided into `parts`.

@@ -2,14 +2,13 @@
 //! of 128 bits get their three-operand forms.
 
 use core::arch::x86_64::*;
-use core::mem::offset_of;
+use core::mem::{MaybeUninit, offset_of};
 
 use super::{Four, WideQuad};
-use crate::blend::{Cell, LaneScales, Lanes};
+use crate::blend::{Cell, Edges, LaneScales, Lanes};
 use crate::channel::{CHANNELS, SLOTS};
 use crate::contact::{Contact, Contacts};
 use crate::instructions::{Eight, Instructions};
-use crate::layout::RECORD;
 use crate::pose::{Pose, Side};
 use crate::rigid::Coordinates;
 use crate::table::ContactTable;
@@ -46,8 +45,14 @@ impl Instructions for Avx2 {
     type Quad = WideQuad;
 
     #[inline(always)]
-    fn blend(self, records: &[[u8; RECORD]], cell: &Cell<WideQuad>, scales: &LaneScales) -> Option<Lanes> {
-        super::blend_256(self, records, cell, scales)
+    fn blend<'p>(
+        self,
+        edges: &Edges<'_>,
+        cell: &Cell<WideQuad>,
+        scales: &LaneScales,
+        place: &'p mut MaybeUninit<Lanes>,
+    ) -> &'p Lanes {
+        super::blend_256(self, edges, cell, scales, place)
     }
 
     #[inline(always)]

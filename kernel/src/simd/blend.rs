@@ -2,12 +2,13 @@
 #![expect(clippy::indexing_slicing, reason = "indices are constants once inlined, and the arrays' sizes are known")]
 
 use core::arch::x86_64::*;
+use core::mem::MaybeUninit;
 use core::sync::atomic::{Ordering, compiler_fence};
 
-use super::{Avx2, Quad, WideQuad, numbers};
-use crate::blend::{Cell, FINE, FINE_BITS, FINE_MASK, FINE_STEP, LaneScales, Lanes, edges, fractions};
+use super::{Avx2, Quad, WideQuad, escape};
+use crate::blend::{Cell, Edges, FINE, FINE_BITS, FINE_MASK, FINE_STEP, LaneScales, Lanes, fractions};
 use crate::channel::{BLOCK, LANES, SLOTS};
-use crate::layout::RECORD;
+use crate::layout::{RECORD, stored_block};
 
 /// Weights of the edges: pairs of `i16` for two neighbouring edges.
 struct Weights {
@@ -69,9 +70,8 @@ fn pairs(w: __m128i) -> [__m128i; 4] {
 type EdgePairs<'a> = [[&'a [u8; 2 * RECORD]; 2]; 4];
 
 #[inline(always)]
-fn edge_pairs<'a, Q>(records: &'a [[u8; RECORD]], cell: &Cell<Q>) -> Option<EdgePairs<'a>> {
-    let [a, b, c, d, e, f, g, h] = edges(records, cell)?;
-    Some([[a, b], [c, d], [e, f], [g, h]])
+const fn edge_pairs<'a>([a, b, c, d, e, f, g, h]: &Edges<'a>) -> EdgePairs<'a> {
+    [[a, b], [c, d], [e, f], [g, h]]
 }
 
 /// Four sums at the lower node and the rise to the upper node, as `f32`.
@@ -82,61 +82,73 @@ fn base_and_rise([low, high]: [__m128i; 2]) -> [__m128; 2] {
 
 /// [`portable`](crate::blend::portable) with vectors of 128 bits.
 #[inline(always)]
-pub(crate) fn blend_128(records: &[[u8; RECORD]], cell: &Cell, scales: &LaneScales) -> Option<Lanes> {
-    let edges = edge_pairs(records, cell)?;
+pub(crate) fn blend_128<'p>(
+    edges: &Edges<'_>,
+    cell: &Cell,
+    scales: &LaneScales,
+    place: &'p mut MaybeUninit<Lanes>,
+) -> &'p Lanes {
+    let edges = edge_pairs(edges);
     let weights = Weights::new(cell.sums.map(Quad::rounded));
-    let weights = (pairs(weights.coarse), pairs(weights.fine));
-    let mut lanes = Lanes::ZERO;
-    if let [a, b, c, d, e, f, g, h] = lanes.0.as_chunks_mut().0 {
-        // The fences keep the compiler from interleaving the four, which would spill registers. They cost nothing.
-        [*a, *b] = eight::<0>(&edges, &weights, cell, scales);
-        compiler_fence(Ordering::SeqCst);
-        [*c, *d] = eight::<1>(&edges, &weights, cell, scales);
-        compiler_fence(Ordering::SeqCst);
-        [*e, *f] = eight::<2>(&edges, &weights, cell, scales);
-        compiler_fence(Ordering::SeqCst);
-        [*g, *h] = eight::<3>(&edges, &weights, cell, scales);
-    }
-    Some(lanes)
+    let coarse = pairs(weights.coarse);
+    // In memory until they are wanted: with them there would be too few registers for the sums.
+    let mut fine = weights.fine;
+    let fine = &*escape(&mut fine);
+    // The fences keep the compiler from interleaving the four, which would spill registers. They cost nothing.
+    eight::<2>(&edges, &coarse, fine, cell, scales, place);
+    compiler_fence(Ordering::SeqCst);
+    eight::<3>(&edges, &coarse, fine, cell, scales, place);
+    compiler_fence(Ordering::SeqCst);
+    eight::<1>(&edges, &coarse, fine, cell, scales, place);
+    compiler_fence(Ordering::SeqCst);
+    eight::<0>(&edges, &coarse, fine, cell, scales, place);
+    compiler_fence(Ordering::SeqCst);
+    // The four have written all of it.
+    unsafe { place.assume_init_ref() }
 }
 
-/// Lanes 8 V to 8 V + 8.
+/// The two blocks that lie one after the other in a record, from 8 V on.
 #[inline(always)]
 fn eight<const V: usize>(
     edges: &EdgePairs<'_>,
-    (coarse, fine): &([__m128i; 4], [__m128i; 4]),
+    coarse: &[__m128i; 4],
+    fine: &__m128i,
     cell: &Cell,
     scales: &LaneScales,
-) -> [[f32; BLOCK]; 2] {
+    place: &mut MaybeUninit<Lanes>,
+) {
     unsafe {
-        // [lanes 0 to 4 or 4 to 8][lower or upper node]
+        let blocks = [stored_block(2 * V), stored_block(2 * V + 1)];
+        let fine = pairs(*fine);
+        // [block][lower or upper node]
         let mut sums = [[_mm_setzero_si128(); 2]; 2];
         let mut fine_sums = sums;
         for node in 0..2 {
-            for ((pair, coarse), fine) in edges.iter().zip(coarse).zip(fine) {
+            for ((pair, coarse), fine) in edges.iter().zip(coarse).zip(&fine) {
                 let [a, b] = pair.map(|edge| load_128::<V>(edge, node));
                 for (half, q) in [_mm_unpacklo_epi16(a, b), _mm_unpackhi_epi16(a, b)].into_iter().enumerate() {
                     let (sum, fine_sum) = (&mut sums[half][node], &mut fine_sums[half][node]);
                     *sum = _mm_add_epi32(*sum, _mm_madd_epi16(q, *coarse));
-                    if FINE[2 * V + half] {
+                    if FINE[blocks[half]] {
                         *fine_sum = _mm_add_epi32(*fine_sum, _mm_madd_epi16(q, *fine));
                     }
                 }
             }
         }
-        let value = |half: usize| {
-            let block = 2 * V + half;
-            let [mut base, mut rise] = base_and_rise(sums[half]);
+        let place: *mut f32 = place.as_mut_ptr().cast();
+        for (block, sums, fine_sums) in [(blocks[0], sums[0], fine_sums[0]), (blocks[1], sums[1], fine_sums[1])] {
+            let [mut base, mut rise] = base_and_rise(sums);
             if FINE[block] {
-                let [base_fine, rise_fine] = base_and_rise(fine_sums[half]);
+                let [base_fine, rise_fine] = base_and_rise(fine_sums);
                 base = _mm_add_ps(base, _mm_mul_ps(base_fine, _mm_set1_ps(FINE_STEP)));
                 rise = _mm_add_ps(rise, _mm_mul_ps(rise_fine, _mm_set1_ps(FINE_STEP)));
             }
             let q = _mm_add_ps(base, _mm_mul_ps(four(fractions(cell, block)), rise));
             let of = |numbers: &[f32; LANES]| four(numbers.as_chunks().0.get(block).copied().unwrap_or_default());
-            numbers(_mm_add_ps(of(&scales.offsets), _mm_mul_ps(of(&scales.steps), q)))
-        };
-        [value(0), value(1)]
+            let values = _mm_add_ps(of(&scales.offsets), _mm_mul_ps(of(&scales.steps), q));
+            // A block of the lanes, which are aligned.
+            _mm_store_ps(place.add(BLOCK * block), values);
+        }
     }
 }
 
@@ -148,32 +160,32 @@ fn four([a, b, c, d]: [f32; 4]) -> __m128 {
 
 /// [`portable`](crate::blend::portable) with vectors of 256 bits.
 #[inline(always)]
-pub(crate) fn blend_256(
+pub(crate) fn blend_256<'p>(
     _: Avx2,
-    records: &[[u8; RECORD]],
+    edges: &Edges<'_>,
     cell: &Cell<WideQuad>,
     scales: &LaneScales,
-) -> Option<Lanes> {
+    place: &'p mut MaybeUninit<Lanes>,
+) -> &'p Lanes {
     unsafe {
-        let edges = edge_pairs(records, cell)?;
+        let edges = edge_pairs(edges);
         let weights = Weights::new(cell.sums.map(WideQuad::rounded));
         let (coarse, fine) = (wide_pairs(weights.coarse), wide_pairs(weights.fine));
-        let mut lanes = Lanes::ZERO;
-        if let [a, b, c, d] = lanes.0.as_chunks_mut().0 {
-            let ([mut first, second], fine) = sixteen::<0>(&edges, &coarse, &fine);
-            let step = _mm256_set1_ps(FINE_STEP);
-            let clamped = _mm256_set1_ps(cell.fraction);
-            let unclamped = _mm256_blend_ps::<UNCLAMPED>(clamped, _mm256_set1_ps(cell.unclamped));
-            first.base = _mm256_add_ps(first.base, _mm256_mul_ps(fine.base, step));
-            first.rise = _mm256_add_ps(first.rise, _mm256_mul_ps(fine.rise, step));
-            first.store::<0>(unclamped, scales, a);
-            second.store::<1>(clamped, scales, b);
-            compiler_fence(Ordering::SeqCst);
-            let ([third, fourth], _) = sixteen::<1>(&edges, &coarse, &[_mm256_setzero_si256(); 4]);
-            third.store::<2>(clamped, scales, c);
-            fourth.store::<3>(clamped, scales, d);
-        }
-        Some(lanes)
+        let ([mut first, second], fine) = sixteen::<0>(&edges, &coarse, &fine);
+        let step = _mm256_set1_ps(FINE_STEP);
+        let clamped = _mm256_set1_ps(cell.fraction);
+        let unclamped = _mm256_blend_ps::<UNCLAMPED>(clamped, _mm256_set1_ps(cell.unclamped));
+        first.base = _mm256_add_ps(first.base, _mm256_mul_ps(fine.base, step));
+        first.rise = _mm256_add_ps(first.rise, _mm256_mul_ps(fine.rise, step));
+        first.store::<0>(unclamped, scales, place);
+        second.store::<1>(clamped, scales, place);
+        compiler_fence(Ordering::SeqCst);
+        let ([third, fourth], _) = sixteen::<1>(&edges, &coarse, &[_mm256_setzero_si256(); 4]);
+        third.store::<2>(clamped, scales, place);
+        fourth.store::<3>(clamped, scales, place);
+        compiler_fence(Ordering::SeqCst);
+        // The four have written all of it.
+        place.assume_init_ref()
     }
 }
 
@@ -207,57 +219,41 @@ impl Eight {
         unsafe { Self { base: _mm256_cvtepi32_ps(low), rise: _mm256_cvtepi32_ps(_mm256_sub_epi32(high, low)) } }
     }
 
-    /// Blocks 0 and 2, 1 and 3, as 0 and 1, 2 and 3.
-    #[inline(always)]
-    fn in_order([a, b]: [Self; 2]) -> [Self; 2] {
-        unsafe {
-            [
-                Self {
-                    base: _mm256_permute2f128_ps::<0x20>(a.base, b.base),
-                    rise: _mm256_permute2f128_ps::<0x20>(a.rise, b.rise),
-                },
-                Self {
-                    base: _mm256_permute2f128_ps::<0x31>(a.base, b.base),
-                    rise: _mm256_permute2f128_ps::<0x31>(a.rise, b.rise),
-                },
-            ]
-        }
-    }
-
     /// Lanes 8 E to 8 E + 8 in their units: offset + step (base + t rise).
     #[inline(always)]
-    fn store<const E: usize>(&self, t: __m256, scales: &LaneScales, out: &mut [f32; 2 * BLOCK]) {
+    fn store<const E: usize>(&self, t: __m256, scales: &LaneScales, place: &mut MaybeUninit<Lanes>) {
         let of = |numbers: &[f32; LANES]| numbers.as_chunks().0.get(E).copied().unwrap_or([0.0; 2 * BLOCK]);
         let (offsets, steps) = (of(&scales.offsets), of(&scales.steps));
-        // The pointers are those of eight `f32` each, and neither loads nor store ask for alignment.
+        // The pointers are those of eight `f32` each; the loads ask for no alignment, and lanes have it.
         unsafe {
             let (offsets, steps) = (_mm256_loadu_ps(offsets.as_ptr()), _mm256_loadu_ps(steps.as_ptr()));
             let q = _mm256_add_ps(self.base, _mm256_mul_ps(t, self.rise));
-            _mm256_storeu_ps(out.as_mut_ptr(), _mm256_add_ps(offsets, _mm256_mul_ps(steps, q)));
+            let place: *mut f32 = place.as_mut_ptr().cast();
+            _mm256_storeu_ps(place.add(2 * BLOCK * E), _mm256_add_ps(offsets, _mm256_mul_ps(steps, q)));
         }
     }
 }
 
-/// Lanes 16 V to 16 V + 16. Unpacking works within halves of the vector: of four blocks it gives the first and the third,
-/// then the second and the fourth. The first eight, where V is 0, by the fine weights too.
+/// Lanes 16 V to 16 V + 16. Unpacking works within halves of the vector: of the four blocks in a record it gives the first
+/// and the third, which are the first two of the channels' order, then the other two. The first eight, where V is 0, by the
+/// fine weights too.
 #[inline(always)]
 fn sixteen<const V: usize>(edges: &EdgePairs<'_>, coarse: &[__m256i; 4], fine: &[__m256i; 4]) -> ([Eight; 2], Eight) {
     unsafe {
         // At the lower node and at the upper one.
         let zero = [_mm256_setzero_si256(); 2];
-        let (mut odd, mut even, mut first_fine) = (zero, zero, zero);
+        let (mut first, mut second, mut first_fine) = (zero, zero, zero);
         for node in 0..2 {
             for (([a, b], coarse), fine) in edges.iter().zip(coarse).zip(fine) {
                 let (a, b) = (load_256::<V>(a, node), load_256::<V>(b, node));
                 let (low, high) = (_mm256_unpacklo_epi16(a, b), _mm256_unpackhi_epi16(a, b));
-                odd[node] = _mm256_add_epi32(odd[node], _mm256_madd_epi16(low, *coarse));
-                even[node] = _mm256_add_epi32(even[node], _mm256_madd_epi16(high, *coarse));
+                first[node] = _mm256_add_epi32(first[node], _mm256_madd_epi16(low, *coarse));
+                second[node] = _mm256_add_epi32(second[node], _mm256_madd_epi16(high, *coarse));
                 if V == 0 {
-                    let first = _mm256_inserti128_si256::<1>(low, _mm256_castsi256_si128(high));
-                    first_fine[node] = _mm256_add_epi32(first_fine[node], _mm256_madd_epi16(first, *fine));
+                    first_fine[node] = _mm256_add_epi32(first_fine[node], _mm256_madd_epi16(low, *fine));
                 }
             }
         }
-        (Eight::in_order([Eight::new(odd), Eight::new(even)]), Eight::new(first_fine))
+        ([Eight::new(first), Eight::new(second)], Eight::new(first_fine))
     }
 }

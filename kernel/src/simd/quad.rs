@@ -48,8 +48,9 @@ impl Quad {
     #[inline(always)]
     pub(crate) fn all_within(self, limit: f64) -> bool {
         unsafe {
-            let [low, high] = self.0.map(|x| _mm_cmple_pd(_mm_andnot_pd(_mm_set1_pd(-0.0), x), _mm_set1_pd(limit)));
-            _mm_movemask_pd(_mm_and_pd(low, high)) == 3
+            // Not at most: what is no number is not.
+            let [low, high] = self.0.map(|x| _mm_cmpnle_pd(_mm_andnot_pd(_mm_set1_pd(-0.0), x), _mm_set1_pd(limit)));
+            _mm_movemask_pd(_mm_or_pd(low, high)) == 0
         }
     }
 
