@@ -74,13 +74,8 @@ impl OwnedAxis {
     /// The axis of a table with these strides.
     #[must_use]
     pub fn leading(mut self, strides: Strides) -> Self {
-        let cells = self.starts.windows(2).enumerate();
-        let bins = cells.flat_map(|(cell, ends)| {
-            let length = ends[1] - ends[0];
-            std::iter::repeat_n(Bin::new(cell, ends[0], length, strides).to_bytes(), length)
-        });
-        (self.bins, self.strides) = (bins.collect(), strides);
-        self.bins.extend(self.bins.last().copied());
+        let bins = Bin::of_cells(&self.starts, strides).map(|bin| bin.to_bytes()).collect();
+        (self.bins, self.strides) = (bins, strides);
         self
     }
 

@@ -107,6 +107,17 @@ impl Bin {
         }
     }
 
+    /// The bins of cells that begin at these bins and of which the last ends at the last of them, as an axis holds them: the
+    /// very last one twice.
+    pub fn of_cells(starts: &[usize], strides: Strides) -> impl Iterator<Item = Self> {
+        starts.windows(2).enumerate().flat_map(move |(cell, ends)| {
+            let (start, end) = (ends.first().copied().unwrap_or_default(), ends.last().copied().unwrap_or_default());
+            let length = end.saturating_sub(start);
+            let twice = usize::from(cell + 2 == starts.len());
+            core::iter::repeat_n(Self::new(cell, start, length, strides), length + twice)
+        })
+    }
+
     /// The four numbers in their order, little-endian.
     #[must_use]
     pub fn to_bytes(&self) -> BinBytes {
@@ -427,12 +438,8 @@ mod tests {
 
     /// Nodes, and bins of cells of these lengths.
     fn bytes(nodes: &[f64], lengths: &[usize]) -> (Vec<NodeBytes>, Vec<BinBytes>) {
-        let mut bins = Vec::new();
-        for (cell, length) in lengths.iter().enumerate() {
-            let bin = Bin::new(cell, bins.len(), *length, STRIDES).to_bytes();
-            bins.extend(core::iter::repeat_n(bin, *length));
-        }
-        bins.extend(bins.last().copied());
+        let starts: Vec<usize> = (0..=lengths.len()).map(|cells| lengths[..cells].iter().sum()).collect();
+        let bins = Bin::of_cells(&starts, STRIDES).map(|bin| bin.to_bytes()).collect();
         (nodes.iter().map(|x| x.to_le_bytes()).collect(), bins)
     }
 

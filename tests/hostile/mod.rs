@@ -157,11 +157,7 @@ fn mend_bins(image: &mut [u8]) {
         }
         let begins = |bin: &usize| *bin == 0 || inner.contains(&bin_start(*first, *last, count, *bin));
         let starts: Vec<usize> = (0..count).filter(begins).chain([count]).collect();
-        let cells = starts.windows(2).enumerate().flat_map(|(cell, ends)| {
-            std::iter::repeat_n(Bin::new(cell, ends[0], ends[1] - ends[0], strides).to_bytes(), ends[1] - ends[0])
-        });
-        let mut bytes: Vec<[u8; BIN]> = cells.collect();
-        bytes.extend(bytes.last().copied());
+        let bytes: Vec<[u8; BIN]> = Bin::of_cells(&starts, strides).map(|bin| bin.to_bytes()).collect();
         mended.push((bins.start, bytes));
     }
     for (at, bytes) in mended {

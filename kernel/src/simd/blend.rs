@@ -224,7 +224,7 @@ impl Eight {
     fn store<const E: usize>(&self, t: __m256, scales: &LaneScales, place: &mut MaybeUninit<Lanes>) {
         let of = |numbers: &[f32; LANES]| numbers.as_chunks().0.get(E).copied().unwrap_or([0.0; 2 * BLOCK]);
         let (offsets, steps) = (of(&scales.offsets), of(&scales.steps));
-        // The pointers are those of eight `f32` each; the loads ask for no alignment, and lanes have it.
+        // The pointers are those of eight `f32` each, and neither loads nor store ask for alignment.
         unsafe {
             let (offsets, steps) = (_mm256_loadu_ps(offsets.as_ptr()), _mm256_loadu_ps(steps.as_ptr()));
             let q = _mm256_add_ps(self.base, _mm256_mul_ps(t, self.rise));
