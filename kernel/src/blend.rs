@@ -26,7 +26,7 @@ use crate::math::{Quad, Two, single};
 /// Bits of the fine weights.
 pub(crate) const FINE_BITS: u32 = 12;
 /// Sum of all weights, -2²⁷.
-const ONE: f64 = -134_217_728.0;
+pub(crate) const ONE: f64 = -134_217_728.0;
 /// One step of the fine weights in steps of the coarse ones, 2⁻¹².
 pub(crate) const FINE_STEP: f32 = 1.0 / 4096.0;
 /// One step of a record in steps of a blended lane, -2⁻¹⁵, negative as the weights are.
@@ -109,33 +109,43 @@ impl<Q> Cell<Q> {
         Self {
             base: plane.records + section.records,
             strides,
-            sums: running_sums(with, plane.fraction, roll_fraction),
+            sums: Q::running_sums(with, plane.fraction, roll_fraction),
             fraction: single(fraction),
             unclamped: single(unclamped),
         }
     }
 }
 
-/// Running sum of the weights (1 - u or u)(1 - p or p)(1 - r or r) with r fastest, times -2²⁷, by splitting the whole in
-/// two along u, each half along p, each quarter along r.
+/// Running sums of the weights (u or 1 - u)(p or 1 - p)(r or 1 - r) with r fastest, times -2²⁷, from that of upr on: by
+/// splitting the whole in two along u, each half along p, each quarter along r.
+///
+/// ```text
+/// half     = u
+/// quarters = 0 + (half - 0) p,  half + (1 - half) p
+/// eighths  = 0 + (quarter - 0) r,  quarter + (half - quarter) r  and so on
+/// ```
+///
+/// Answers the eighths, and where each ends: at the next quarter.
 #[inline(always)]
-fn running_sums<I: Instructions>(with: I, plane: Two, roll: f64) -> [I::Quad; 2] {
-    let ([u, p], r) = ((Two::all(1.0) - plane).numbers(), 1.0 - roll);
+pub(crate) fn running_sums(plane: Two, roll: f64) -> [Quad; 2] {
+    let [u, p] = plane.numbers();
     let half = ONE * u;
     let (begin, end) = (Two::new([0.0, half]), Two::new([half, ONE]));
     let quarters = begin + (end - begin) * Two::all(p);
-    let join = |of| I::Quad::join(with, Two::transpose(of));
+    let join = |of| Quad::join(Two::transpose(of));
     let (begin, end) = (join([begin, quarters]), join([quarters, end]));
-    [begin + (end - begin) * I::Quad::all(with, r), end]
+    [begin + (end - begin) * Quad::all(roll), end]
 }
 
 /// The two records of each of a cell's vertical edges, the lower one first.
 pub(crate) type Edges<'a> = [&'a [u8; 2 * RECORD]; 8];
 
-/// The records of a cell, roll offset fastest, then yaw, then lateral; every cell of a checked table has them.
+/// The records of a cell from its last edge to its first, roll offset fastest, then yaw, then lateral; every cell of a
+/// checked table has them.
 #[inline(always)]
 pub(crate) fn edges<'a, Q>(records: &'a [u8], cell: &Cell<Q>) -> Option<Edges<'a>> {
-    eight(records, cell.base, cell.strides)
+    let [a, b, c, d, e, f, g, h] = eight(records, cell.base, cell.strides)?;
+    Some([h, g, f, e, d, c, b, a])
 }
 
 /// Fractions between the vertical nodes by lane of a block: not clamped for a slot's indentation.

@@ -150,11 +150,11 @@ impl Frame {
         geometry: &WheelGeometry,
         attitude: &Attitude,
         displacement: &Displacement,
+        arm: f64,
         longitudinal_sign: f64,
     ) -> Self {
-        let (b, psi, phi) = (geometry.lateral_position, &attitude.yaw, &attitude.roll);
-        let arm = b - attitude.inwards(geometry);
-        let place = [displacement.lateral + b, displacement.vertical, arm, longitudinal_sign];
+        let (psi, phi) = (&attitude.yaw, &attitude.roll);
+        let place = [displacement.lateral + geometry.lateral_position, displacement.vertical, arm, longitudinal_sign];
         Self { rotation: Quad::new([psi.sin, phi.sin, psi.cos, phi.cos]).single(), place: Quad::new(place).single() }
     }
 }
@@ -303,7 +303,7 @@ mod tests {
     fn contacts_without_force_are_left_out() {
         let geometry = WheelGeometry { nominal_radius: 0.46, lateral_position: 0.75 };
         let (wheel, attitude) = (Wheel::new(&geometry, Side::Right), Attitude::new(0.0, 0.0));
-        let frame = Frame::new(&geometry, &attitude, &Displacement::default(), 1.0);
+        let frame = Frame::new(&geometry, &attitude, &Displacement::default(), 0.75, 1.0);
         for bits in 0..8_usize {
             let mut lanes = Lanes::ZERO;
             let carrying = || Slot::ALL.into_iter().filter(|slot| bits >> slot.index() & 1 == 1);

@@ -40,7 +40,22 @@ impl Attitude {
     }
 
     /// What the rotation alone displaces the tape-circle point by.
-    ///
+    #[inline]
+    #[must_use]
+    pub fn displacement(&self, geometry: &WheelGeometry) -> Displacement {
+        Turned::new(geometry, self).displacement
+    }
+}
+
+/// Where a rotation alone brings the tape-circle point.
+#[derive(Clone, Copy)]
+pub(crate) struct Turned {
+    pub(crate) displacement: Displacement,
+    /// b cos φ - r0 sin φ: how far the point is from the wheelset's centre, in the direction of the axle before roll, m.
+    pub(crate) arm: f64,
+}
+
+impl Turned {
     /// The tape-circle point is (0, b, r0) in the wheelset's frame and (0, y, z - r0) + R (0, b, r0) in the track
     /// frame. Its displacement from (0, b, 0), with 1 - cos written as the versine v so that nothing cancels:
     ///
@@ -49,26 +64,20 @@ impl Attitude {
     /// u - y = cos ψ (b cos φ - r0 sin φ) - b = -(g + vψ (b - g))
     /// w - z = b sin φ + r0 cos φ - r0        =  b sin φ - r0 vφ
     /// ```
-    #[inline]
-    #[must_use]
-    pub fn displacement(&self, geometry: &WheelGeometry) -> Displacement {
+    #[inline(always)]
+    pub(crate) fn new(geometry: &WheelGeometry, attitude: &Attitude) -> Self {
         let (b, r0) = (geometry.lateral_position, geometry.nominal_radius);
-        let (psi, phi) = (&self.yaw, &self.roll);
-        let inwards = self.inwards(geometry);
-        Displacement {
+        let (psi, phi) = (&attitude.yaw, &attitude.roll);
+        // g = b vφ + r0 sin φ
+        let inwards = b * phi.versine + r0 * phi.sin;
+        let arm = b - inwards;
+        let displacement = Displacement {
             // -(g + vψ (b - g))
-            lateral: -(inwards + psi.versine * (b - inwards)),
+            lateral: -(inwards + psi.versine * arm),
             // b sin φ - r0 vφ
             vertical: b * phi.sin - r0 * phi.versine,
-        }
-    }
-}
-
-impl Attitude {
-    /// How far roll alone moves the tape-circle point towards the wheelset's centre, g = b vφ + r0 sin φ, m.
-    #[inline(always)]
-    pub(crate) fn inwards(&self, geometry: &WheelGeometry) -> f64 {
-        geometry.lateral_position * self.roll.versine + geometry.nominal_radius * self.roll.sin
+        };
+        Self { displacement, arm }
     }
 }
 
@@ -77,7 +86,11 @@ impl Displacement {
     #[inline]
     #[must_use]
     pub fn new(geometry: &WheelGeometry, pose: &Pose, attitude: &Attitude) -> Self {
-        let turned = attitude.displacement(geometry);
+        Self::of(pose, &attitude.displacement(geometry))
+    }
+
+    #[inline(always)]
+    pub(crate) fn of(pose: &Pose, turned: &Self) -> Self {
         Self { lateral: pose.lateral + turned.lateral, vertical: pose.vertical + turned.vertical }
     }
 }

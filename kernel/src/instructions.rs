@@ -3,7 +3,7 @@
 use core::mem::MaybeUninit;
 use core::ops::{Add, Mul, Sub};
 
-use crate::blend::{Cell, Edges, LaneScales, Lanes};
+use crate::blend::{Cell, Edges, LaneScales, Lanes, running_sums};
 use crate::channel::SLOTS;
 use crate::contact::Contact;
 use crate::math::{Four, Quad, Two};
@@ -76,6 +76,9 @@ pub(crate) trait Instructions: Copy {
         place: &'p mut MaybeUninit<Lanes>,
     ) -> &'p Lanes;
 
+    /// The integer parts of numbers from 0 to 15, and the sum of their products with the first two of these.
+    fn integer_parts(self, numbers: Two, factors: &[u32; 4]) -> (u32, Two);
+
     /// The first eight numbers of the slots' contacts, given number by number for all slots, as [`Eight`]s.
     fn transposed(self, numbers: [[Four; 4]; 2]) -> [impl Eight; SLOTS];
 }
@@ -87,12 +90,17 @@ pub(crate) trait Eight {
 
 /// See [`Instructions::Quad`].
 pub(crate) trait Quads<I>: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+    fn new(with: I, numbers: [f64; 4]) -> Self;
     /// Four times the same.
     fn all(with: I, x: f64) -> Self;
     /// Four little-endian `f32`.
     fn of_singles(with: I, bytes: &[u8; 16]) -> Self;
     fn join(with: I, halves: [Two; 2]) -> Self;
     fn halves(self) -> [Two; 2];
+    /// Whether all are numbers at most this large.
+    fn all_within(self, limit: f64) -> bool;
+    /// See [`running_sums`].
+    fn running_sums(with: I, plane: Two, roll: f64) -> [Self; 2];
 }
 
 /// [`InstructionSet::Baseline`].
@@ -122,6 +130,12 @@ impl Instructions for Baseline {
     }
 
     #[inline(always)]
+    fn integer_parts(self, numbers: Two, [of_a, of_b, ..]: &[u32; 4]) -> (u32, Two) {
+        let ([a, b], whole) = numbers.integer_parts();
+        (a * of_a + b * of_b, whole)
+    }
+
+    #[inline(always)]
     fn transposed(self, [first, second]: [[Four; 4]; 2]) -> [impl Eight; SLOTS] {
         let ([a, b, c, _], [d, e, f, _]) = (Four::transpose(first), Four::transpose(second));
         [[a, d], [b, e], [c, f]]
@@ -138,6 +152,11 @@ impl Eight for [Four; 2] {
 }
 
 impl Quads<Baseline> for Quad {
+    #[inline(always)]
+    fn new(_: Baseline, numbers: [f64; 4]) -> Self {
+        Self::new(numbers)
+    }
+
     #[inline(always)]
     fn all(_: Baseline, x: f64) -> Self {
         Self::all(x)
@@ -156,6 +175,16 @@ impl Quads<Baseline> for Quad {
     #[inline(always)]
     fn halves(self) -> [Two; 2] {
         Self::halves(self)
+    }
+
+    #[inline(always)]
+    fn all_within(self, limit: f64) -> bool {
+        Self::all_within(self, limit)
+    }
+
+    #[inline(always)]
+    fn running_sums(_: Baseline, plane: Two, roll: f64) -> [Self; 2] {
+        running_sums(plane, roll)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Poses of the wheelset, the two sides, and the mirror that maps every case to the right wheel with yaw >= 0.
 
-use crate::math::Quad;
+use crate::instructions::{Baseline, Instructions, Quads};
+use crate::math::{Quad, Two};
 
 /// Largest magnitude of a pose's coordinate that is taken as a number, m or rad: beyond it, as for NaN and
 /// infinity, the lookup answers no contact and [`Flags::INVALID_INPUT`](crate::Flags::INVALID_INPUT).
@@ -77,8 +78,12 @@ impl Pose {
     #[inline]
     #[must_use]
     pub fn is_valid(&self) -> bool {
-        // A comparison with NaN is false.
-        Quad::new([self.lateral, self.yaw, self.vertical, self.roll]).all_within(POSE_LIMIT)
+        Quad::new(self.numbers()).all_within(POSE_LIMIT)
+    }
+
+    #[inline(always)]
+    const fn numbers(&self) -> [f64; 4] {
+        [self.lateral, self.yaw, self.vertical, self.roll]
     }
 
     /// The pose as the right wheel with yaw >= 0 sees it: the mirror at y = 0 turns the signs of lateral, yaw and
@@ -87,24 +92,39 @@ impl Pose {
     #[inline]
     #[must_use]
     pub fn canonical(&self, side: Side) -> Canonical {
-        self.mirrored(side.sign())
+        let (canonical, _) = self.mirrored(Baseline, &PoseSigns::new(side));
+        canonical
     }
 
-    /// The same by the side's sign.
+    /// The same, and whether the pose is valid.
     #[inline(always)]
-    pub(crate) fn mirrored(&self, lateral_sign: f64) -> Canonical {
-        let yaw = lateral_sign * self.yaw;
-        Canonical {
-            pose: Self {
-                lateral: lateral_sign * self.lateral,
-                yaw: yaw.abs(),
-                vertical: self.vertical,
-                roll: lateral_sign * self.roll,
-            },
+    pub(crate) fn mirrored<I: Instructions>(&self, with: I, signs: &PoseSigns) -> (Canonical, bool) {
+        let all = I::Quad::new(with, self.numbers());
+        let [place, angles] = Two::transpose((all * I::Quad::new(with, signs.0)).halves());
+        let ([lateral, vertical], [yaw, roll]) = (place.numbers(), angles.numbers());
+        let [lateral_sign, ..] = signs.0;
+        let canonical = Canonical {
+            pose: Self { lateral, yaw: yaw.abs(), vertical, roll },
             lateral_sign,
             // The sum makes -0 positive.
             longitudinal_sign: 1.0_f64.copysign(yaw + 0.0),
-        }
+        };
+        (canonical, all.all_within(POSE_LIMIT))
+    }
+}
+
+/// Factors of a pose's coordinates that mirror it to the right wheel.
+#[derive(Clone, Copy)]
+pub(crate) struct PoseSigns([f64; 4]);
+
+impl PoseSigns {
+    /// None yet.
+    pub(crate) const EMPTY: Self = Self([0.0; 4]);
+
+    #[inline(always)]
+    pub(crate) const fn new(side: Side) -> Self {
+        let sign = side.sign();
+        Self([sign, sign, 1.0, sign])
     }
 }
 

@@ -32,8 +32,8 @@ pub struct RigidMap<'a> {
     /// First and last roll offset, rad.
     roll_offset: [f64; 2],
     parts: Parts,
-    /// Bytes from one lateral node to the next.
-    row: u32,
+    /// Bytes from one lateral node to the next and from one yaw node to the next, and two zeros.
+    strides: [u32; 4],
     /// A whole number of them.
     nodes: &'a [u8],
 }
@@ -63,18 +63,18 @@ impl Parts {
     /// fraction = n t - part
     /// ```
     ///
-    /// Exact, since n is a power of two.
+    /// Exact, since n is a power of two. Answers the bytes to the part instead of its numbers.
     #[inline(always)]
-    fn of(&self, fraction: Two) -> ([u32; 2], Two) {
+    fn of<I: Instructions>(&self, with: I, fraction: Two, bytes: &[u32; 4]) -> (u32, Two) {
         let position = fraction * Two::new(self.numbers);
-        let (parts, whole) = position.at_most(Two::new(self.last)).integer_parts();
-        (parts, position - whole)
+        let (bytes, whole) = with.integer_parts(position.at_most(Two::new(self.last)), bytes);
+        (bytes, position - whole)
     }
 }
 
 impl core::fmt::Debug for RigidMap<'_> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.debug_struct("RigidMap").field("bytes", &self.nodes.len()).field("row", &self.row).finish_non_exhaustive()
+        f.debug_struct("RigidMap").field("bytes", &self.nodes.len()).field("strides", &self.strides).finish_non_exhaustive()
     }
 }
 
@@ -103,7 +103,7 @@ impl<'a> RigidMap<'a> {
         plane: AxisPair::EMPTY,
         roll_offset: [0.0; 2],
         parts: Parts { numbers: [0.0; 2], last: [0.0; 2] },
-        row: 0,
+        strides: [0; 4],
         nodes: &[],
     };
 
@@ -124,7 +124,7 @@ impl<'a> RigidMap<'a> {
             plane: AxisPair::new([lateral, yaw]),
             roll_offset: roll_offset.range().into(),
             parts: Parts::new(refinement),
-            row: u32::try_from(row.checked_mul(RIGID)?).ok()?,
+            strides: [u32::try_from(row.checked_mul(RIGID)?).ok()?, RIGID_BYTES, 0, 0],
             nodes: nodes.as_flattened(),
         })
     }
@@ -138,11 +138,11 @@ impl<'a> RigidMap<'a> {
     /// Bilinear between the nodes around a place.
     #[inline(always)]
     fn contact<I: Instructions>(&self, with: I, places: &Places) -> RigidContact {
-        let ([lateral, yaw], fractions) = self.parts.of(places.fraction);
+        let (bytes, fractions) = self.parts.of(with, places.fraction, &self.strides);
         let [u, psi] = fractions.numbers();
-        let base = places.rigid + (lateral * self.row + yaw * RIGID_BYTES);
+        let [row, ..] = self.strides;
         // Every cell of a checked map has its corners.
-        let [low, high] = two(self.nodes, base, self.row).unwrap_or([NOTHING; 2]);
+        let [low, high] = two(self.nodes, places.rigid + bytes, row).unwrap_or([NOTHING; 2]);
         // Not by `map` of arrays, which a build without link-time optimisation may call instead of inlining.
         let (Some([a, b]), Some([c, d])) = (low.as_chunks().0.first_chunk(), high.as_chunks().0.first_chunk()) else {
             return RigidContact { roll_and_height: Two::all(0.0), slopes: Two::all(0.0) };

@@ -9,14 +9,14 @@ use crate::blend::{Cell, LaneScales, Lanes, edges};
 use crate::channel::{CHANNELS, CONFORMAL_LANE, Channel, LANES, SLOTS, Slot};
 use crate::check;
 use crate::contact::{Contacts, Frame, Wheel};
-use crate::displacement::{Attitude, Displacement, displacement};
+use crate::displacement::{Attitude, Displacement, Turned, displacement};
 use crate::error::TableError;
 use crate::flags::Flags;
 use crate::header::{Header, SideHeader};
 use crate::instructions::{Avx2, Baseline, InstructionSet, Instructions, escape};
 use crate::layout::{RECORD, Sections, SideSections};
 use crate::math::Two;
-use crate::pose::{Pose, Side, WheelGeometry};
+use crate::pose::{Pose, PoseSigns, Side, WheelGeometry};
 use crate::rigid::{Coordinates, RigidMap};
 
 /// A contact table, read in place from a borrowed image.
@@ -37,8 +37,8 @@ pub struct ContactTable<'a> {
 /// What a lookup needs of a side.
 #[derive(Clone)]
 struct SideData<'a> {
-    /// +1 for the right wheel, -1 for the left one.
-    sign: f64,
+    /// What mirrors a pose to the right wheel.
+    signs: PoseSigns,
     geometry: WheelGeometry,
     wheel: Wheel,
     rigid: RigidMap<'a>,
@@ -357,11 +357,12 @@ impl<'a> ContactTable<'a> {
     fn locate<I: Instructions>(&self, with: I, side: Side, pose: &Pose) -> Located {
         let data = self.side(side);
         // An invalid pose costs the same: what is no number is limited like any other.
-        let (canonical, valid) = (pose.mirrored(data.sign), pose.is_valid());
+        let (canonical, valid) = pose.mirrored(with, &data.signs);
         let (attitude, limited) = Attitude::by(with, canonical.pose.yaw, canonical.pose.roll);
-        let displacement = Displacement::new(&data.geometry, &canonical.pose, &attitude);
+        let turned = Turned::new(&data.geometry, &attitude);
+        let displacement = Displacement::of(&canonical.pose, &turned.displacement);
         let (coordinates, plane) = data.rigid.locate(with, &displacement, attitude.yaw.value, attitude.roll.value);
-        let frame = Frame::new(&data.geometry, &attitude, &displacement, canonical.longitudinal_sign);
+        let frame = Frame::new(&data.geometry, &attitude, &displacement, turned.arm, canonical.longitudinal_sign);
         Located { valid, limited, frame, coordinates, plane }
     }
 
@@ -393,7 +394,7 @@ impl fmt::Debug for ContactTable<'_> {
 impl<'a> SideData<'a> {
     /// To be filled.
     const EMPTY: Self = Self {
-        sign: 0.0,
+        signs: PoseSigns::EMPTY,
         geometry: SideHeader::EMPTY.geometry,
         wheel: Wheel::EMPTY,
         rigid: RigidMap::EMPTY,
@@ -425,7 +426,7 @@ impl<'a> SideData<'a> {
 
     /// Makes the data those of a side.
     fn turn(&mut self, side: Side) {
-        self.sign = side.sign();
+        self.signs = PoseSigns::new(side);
         self.wheel = Wheel::new(&self.geometry, side);
     }
 }

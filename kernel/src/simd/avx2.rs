@@ -4,7 +4,7 @@
 use core::arch::x86_64::*;
 use core::mem::{MaybeUninit, offset_of};
 
-use super::{Four, WideQuad};
+use super::{Four, Two, WideQuad};
 use crate::blend::{Cell, Edges, LaneScales, Lanes};
 use crate::channel::{CHANNELS, SLOTS};
 use crate::contact::{Contact, Contacts};
@@ -53,6 +53,17 @@ impl Instructions for Avx2 {
         place: &'p mut MaybeUninit<Lanes>,
     ) -> &'p Lanes {
         super::blend_256(self, edges, cell, scales, place)
+    }
+
+    #[inline(always)]
+    fn integer_parts(self, numbers: Two, factors: &[u32; 4]) -> (u32, Two) {
+        // The pointer is that of sixteen bytes, and the load asks for no alignment.
+        unsafe {
+            let products =
+                _mm_mullo_epi32(_mm_cvttpd_epi32(numbers.0), _mm_loadu_si128(factors.as_ptr().cast::<__m128i>()));
+            let sum = _mm_cvtsi128_si32(_mm_hadd_epi32(products, products));
+            (sum.cast_unsigned(), Two(_mm_round_pd::<{ _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC }>(numbers.0)))
+        }
     }
 
     #[inline(always)]

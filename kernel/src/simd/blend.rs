@@ -169,12 +169,14 @@ pub(crate) fn blend_256<'p>(
 ) -> &'p Lanes {
     unsafe {
         let edges = edge_pairs(edges);
-        let weights = Weights::new(cell.sums.map(WideQuad::rounded));
-        let (coarse, fine) = (wide_pairs(weights.coarse), wide_pairs(weights.fine));
+        // In memory until they are wanted, as with 128 bits.
+        let mut t = [cell.fraction, cell.unclamped];
+        let t = &*escape(&mut t);
+        let [coarse, fine] = wide_pairs(cell.sums.map(WideQuad::rounded));
         let ([mut first, second], fine) = sixteen::<0>(&edges, &coarse, &fine);
         let step = _mm256_set1_ps(FINE_STEP);
-        let clamped = _mm256_set1_ps(cell.fraction);
-        let unclamped = _mm256_blend_ps::<UNCLAMPED>(clamped, _mm256_set1_ps(cell.unclamped));
+        let clamped = _mm256_broadcast_ss(&t[0]);
+        let unclamped = _mm256_blend_ps::<UNCLAMPED>(clamped, _mm256_broadcast_ss(&t[1]));
         first.base = _mm256_add_ps(first.base, _mm256_mul_ps(fine.base, step));
         first.rise = _mm256_add_ps(first.rise, _mm256_mul_ps(fine.rise, step));
         first.store::<0>(unclamped, scales, place);
@@ -193,18 +195,59 @@ pub(crate) fn blend_256<'p>(
 const UNCLAMPED: i32 = (1 << SLOTS) - 1;
 const _: () = assert!(FINE[0] && FINE[1] && !FINE[2] && !FINE[3]);
 
+/// Coarse and fine weights of the edges as [`pairs`] for vectors of 256 bits.
+#[inline(always)]
+fn wide_pairs([even, odd]: [__m128i; 2]) -> [[__m256i; 4]; 2] {
+    unsafe {
+        // The low halves of numbers take turns, so no packing is needed: a weight has no need of what is above its 16 bits.
+        let coarse = _mm_blend_epi16::<0b1010_1010>(
+            _mm_srli_epi32::<{ FINE_BITS as i32 }>(even),
+            _mm_slli_epi32::<{ 16 - FINE_BITS as i32 }>(odd),
+        );
+        let both = _mm_blend_epi16::<0b1010_1010>(even, _mm_slli_epi32::<16>(odd));
+        let fine = _mm_and_si128(both, _mm_set1_epi16(FINE_MASK as i16));
+        [repeated(differences(coarse)), repeated(differences(fine))]
+    }
+}
+
 /// [`pairs`] twice as wide.
 #[inline(always)]
-fn wide_pairs(w: __m128i) -> [__m256i; 4] {
+fn repeated(w: __m128i) -> [__m256i; 4] {
     unsafe {
-        let [a, b, c, d] = pairs(w);
+        let w = held(_mm256_broadcastsi128_si256(w));
         [
-            _mm256_broadcastsi128_si256(a),
-            _mm256_broadcastsi128_si256(b),
-            _mm256_broadcastsi128_si256(c),
-            _mm256_broadcastsi128_si256(d),
+            _mm256_shuffle_epi32::<0x00>(w),
+            _mm256_shuffle_epi32::<0x55>(w),
+            _mm256_shuffle_epi32::<0xaa>(w),
+            _mm256_shuffle_epi32::<0xff>(w),
         ]
     }
+}
+
+/// The same vector, which the compiler must take for any: it would broadcast its parts one by one.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn held(vector: __m256i) -> __m256i {
+    let mut vector = vector;
+    // SAFETY: no instruction at all.
+    #[cfg(not(miri))]
+    unsafe {
+        core::arch::asm!("/* {} */", inout(ymm_reg) vector, options(pure, nomem, nostack, preserves_flags));
+    }
+    vector
+}
+
+/// The same vector, and all memory, which the compiler must take for any.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn settled(vector: __m256i) -> __m256i {
+    let mut vector = vector;
+    // SAFETY: no instruction at all.
+    #[cfg(not(miri))]
+    unsafe {
+        core::arch::asm!("/* {} */", inout(ymm_reg) vector, options(nostack, preserves_flags));
+    }
+    vector
 }
 
 /// Eight lanes at the lower node, and their rise to the upper one.
@@ -245,13 +288,16 @@ fn sixteen<const V: usize>(edges: &EdgePairs<'_>, coarse: &[__m256i; 4], fine: &
         let (mut first, mut second, mut first_fine) = (zero, zero, zero);
         for node in 0..2 {
             for (([a, b], coarse), fine) in edges.iter().zip(coarse).zip(fine) {
-                let (a, b) = (load_256::<V>(a, node), load_256::<V>(b, node));
-                let (low, high) = (_mm256_unpacklo_epi16(a, b), _mm256_unpackhi_epi16(a, b));
+                let a = load_256::<V>(a, node);
+                let low = _mm256_unpacklo_epi16(a, load_256::<V>(b, node));
                 first[node] = _mm256_add_epi32(first[node], _mm256_madd_epi16(low, *coarse));
-                second[node] = _mm256_add_epi32(second[node], _mm256_madd_epi16(high, *coarse));
                 if V == 0 {
                     first_fine[node] = _mm256_add_epi32(first_fine[node], _mm256_madd_epi16(low, *fine));
                 }
+                // Then read b again: from memory, unpacking is one instruction.
+                first[node] = settled(first[node]);
+                let high = _mm256_unpackhi_epi16(a, load_256::<V>(b, node));
+                second[node] = settled(_mm256_add_epi32(second[node], _mm256_madd_epi16(high, *coarse)));
             }
         }
         ([Eight::new(first), Eight::new(second)], Eight::new(first_fine))

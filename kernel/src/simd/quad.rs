@@ -4,6 +4,7 @@ use core::arch::x86_64::*;
 use core::ops::{Add, Mul, Sub};
 
 use super::{Avx2, Four, Two};
+use crate::blend::ONE;
 use crate::instructions::Quads;
 
 /// Four `f64` that take the same operations.
@@ -100,6 +101,11 @@ pub(crate) struct WideQuad(__m256d);
 // SAFETY of every block below: there is AVX2, and with it AVX.
 impl Quads<Avx2> for WideQuad {
     #[inline(always)]
+    fn new(_: Avx2, [a, b, c, d]: [f64; 4]) -> Self {
+        Self(unsafe { _mm256_set_pd(d, c, b, a) })
+    }
+
+    #[inline(always)]
     fn all(_: Avx2, x: f64) -> Self {
         Self(unsafe { _mm256_set1_pd(x) })
     }
@@ -118,6 +124,29 @@ impl Quads<Avx2> for WideQuad {
     #[inline(always)]
     fn halves(self) -> [Two; 2] {
         unsafe { [Two(_mm256_castpd256_pd128(self.0)), Two(_mm256_extractf128_pd::<1>(self.0))] }
+    }
+
+    #[inline(always)]
+    fn all_within(self, limit: f64) -> bool {
+        unsafe {
+            // Not at most: what is no number is not.
+            let size = _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0);
+            _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_NLE_UQ>(size, _mm256_set1_pd(limit))) == 0
+        }
+    }
+
+    #[inline(always)]
+    fn running_sums(with: Avx2, plane: Two, roll: f64) -> [Self; 2] {
+        let numbers = |numbers| Self::new(with, numbers);
+        let plane = unsafe { _mm256_castpd128_pd256(plane.0) };
+        let [u, p] = unsafe { [_mm256_permute4x64_pd::<0x00>(plane), _mm256_permute4x64_pd::<0x55>(plane)] }.map(Self);
+        // Twice each half's begin and, where a quarter is to be split off, its length.
+        let begin = u * numbers([0.0, 0.0, ONE, ONE]);
+        let length = numbers([0.0, 0.0, 0.0, ONE]) + u * numbers([0.0, ONE, 0.0, -ONE]);
+        let begin = begin + length * p;
+        let one = numbers([ONE; 4]).0;
+        let end = Self(unsafe { _mm256_blend_pd::<0b1000>(_mm256_permute4x64_pd::<0b11_11_10_01>(begin.0), one) });
+        [begin + (end - begin) * Self::all(with, roll), end]
     }
 }
 
