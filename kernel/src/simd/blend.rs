@@ -185,7 +185,6 @@ pub(crate) fn blend_256<'p>(
         let ([third, fourth], _) = sixteen::<1>(&edges, &coarse, &[_mm256_setzero_si256(); 4]);
         third.store::<2>(clamped, scales, place);
         fourth.store::<3>(clamped, scales, place);
-        compiler_fence(Ordering::SeqCst);
         // The four have written all of it.
         place.assume_init_ref()
     }
