@@ -3,6 +3,7 @@
 use core::fmt;
 
 use crate::error::TableError;
+use crate::instructions::{Baseline, Instructions};
 use crate::layout::{BIN, Strides};
 use crate::math::{Two, at_least, at_most, single};
 
@@ -303,7 +304,7 @@ impl<'a> Axis<'a> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a bin's number")]
     pub fn locate(&self, x: f64) -> Place {
         let pair = AxisPair::new([*self; 2]);
-        let (places, [bin, _]) = (pair.locate(Two::all(x)), pair.bins_of(Two::all(x)));
+        let (places, [bin, _]) = (pair.locate(Baseline, Two::all(x)), pair.bins_of(Two::all(x)));
         let (start, [fraction, _]) = (Bin::from_bytes(bin).start, places.fraction.numbers());
         let [unclamped, _] = places.unclamped().numbers();
         // Nodes lie where bins begin.
@@ -344,6 +345,32 @@ impl Places {
     pub(crate) fn unclamped(&self) -> Two {
         let limit = Two::all(EXTRAPOLATION_LIMIT);
         (self.fraction + self.outside).at_least(Two::all(-EXTRAPOLATION_LIMIT)).at_most(limit)
+    }
+}
+
+/// What the bins of two axes say of their cells.
+pub(crate) struct Cells {
+    pub(crate) start: Two,
+    pub(crate) reciprocal: Two,
+    /// Bytes to their first record, the two axes together.
+    pub(crate) records: u32,
+    /// The same in the rigid map.
+    pub(crate) rigid: u32,
+}
+
+impl Cells {
+    #[inline(always)]
+    pub(crate) fn new(a: &BinBytes, b: &BinBytes) -> Self {
+        let numbers = |bin: &BinBytes| Two::of_singles(bin.first_chunk().unwrap_or(&[0; 8]));
+        let offset =
+            |bin: &BinBytes, word: usize| u32::from_le_bytes(bin.as_chunks().0.get(word).copied().unwrap_or_default());
+        let [start, reciprocal] = Two::transpose([numbers(a), numbers(b)]);
+        Self {
+            start,
+            reciprocal,
+            records: offset(a, 2).wrapping_add(offset(b, 2)),
+            rigid: offset(a, 3).wrapping_add(offset(b, 3)),
+        }
     }
 }
 
@@ -400,17 +427,14 @@ impl<'a> AxisPair<'a> {
     /// fraction = (position - start[bin]) reciprocal[bin]
     /// ```
     #[inline(always)]
-    pub(crate) fn locate(&self, x: Two) -> Places {
+    pub(crate) fn locate<I: Instructions>(&self, with: I, x: Two) -> Places {
         let inside = self.clamp(x);
         let position = self.position(inside);
         let [a, b] = self.bins_at(position);
-        let numbers = |bin: &BinBytes| Two::of_singles(bin.first_chunk().unwrap_or(&[0; 8]));
-        let offset =
-            |bin: &BinBytes, word: usize| u32::from_le_bytes(bin.as_chunks().0.get(word).copied().unwrap_or_default());
-        let [start, reciprocal] = Two::transpose([numbers(a), numbers(b)]);
+        let Cells { start, reciprocal, records, rigid } = with.cells(a, b);
         Places {
-            records: offset(a, 2).wrapping_add(offset(b, 2)),
-            rigid: offset(a, 3).wrapping_add(offset(b, 3)),
+            records,
+            rigid,
             fraction: (position - start) * reciprocal,
             outside: (x - inside) * Two::new(self.bins_per_unit) * reciprocal,
             clamped: inside.differs(x),
@@ -451,7 +475,7 @@ mod tests {
         for (x, cell) in [(0.0, 0), (0.99, 0), (1.01, 1), (2.99, 1), (3.01, 2), (8.0, 2), (99.0, 2), (-1.0, 0)] {
             let x = x / 128.0;
             assert_eq!(axis.locate(x).cell, cell, "{x}");
-            let places = AxisPair::new([axis; 2]).locate(Two::all(x));
+            let places = AxisPair::new([axis; 2]).locate(Baseline, Two::all(x));
             let offsets = [places.records / 256, places.rigid / 64].map(|cell| usize::try_from(cell).unwrap());
             assert_eq!(offsets, [cell; 2]);
         }

@@ -3,6 +3,7 @@
 use core::mem::MaybeUninit;
 use core::ops::{Add, Mul, Sub};
 
+use crate::axis::{BinBytes, Cells};
 use crate::blend::{Cell, Edges, LaneScales, Lanes, running_sums};
 use crate::channel::SLOTS;
 use crate::contact::Contact;
@@ -76,6 +77,9 @@ pub(crate) trait Instructions: Copy {
         place: &'p mut MaybeUninit<Lanes>,
     ) -> &'p Lanes;
 
+    /// What the bins of two axes say.
+    fn cells(self, a: &BinBytes, b: &BinBytes) -> Cells;
+
     /// The integer parts of numbers from 0 to 15, and the sum of their products with the first two of these.
     fn integer_parts(self, numbers: Two, factors: &[u32; 4]) -> (u32, Two);
 
@@ -127,6 +131,11 @@ impl Instructions for Baseline {
             feature = "portable"
         ))]
         return crate::blend::portable(edges, cell, scales, place);
+    }
+
+    #[inline(always)]
+    fn cells(self, a: &BinBytes, b: &BinBytes) -> Cells {
+        Cells::new(a, b)
     }
 
     #[inline(always)]

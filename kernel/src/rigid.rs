@@ -131,8 +131,8 @@ impl<'a> RigidMap<'a> {
 
     /// Places of lateral displacement and yaw on the records' axes.
     #[inline(always)]
-    pub(crate) fn plane(&self, lateral: f64, yaw: f64) -> Places {
-        self.plane.locate(Two::new([lateral, yaw]))
+    pub(crate) fn plane<I: Instructions>(&self, with: I, lateral: f64, yaw: f64) -> Places {
+        self.plane.locate(with, Two::new([lateral, yaw]))
     }
 
     /// Bilinear between the nodes around a place.
@@ -165,7 +165,7 @@ impl<'a> RigidMap<'a> {
     #[inline]
     #[must_use]
     pub fn roll(&self, lateral: f64, yaw: f64) -> f64 {
-        let [roll, _] = self.contact(Baseline, &self.plane(lateral, yaw)).roll_and_height.numbers();
+        let [roll, _] = self.contact(Baseline, &self.plane(Baseline, lateral, yaw)).roll_and_height.numbers();
         roll
     }
 
@@ -174,7 +174,7 @@ impl<'a> RigidMap<'a> {
     #[inline]
     #[must_use]
     pub fn vertical(&self, lateral: f64, yaw: f64, roll_offset: f64) -> f64 {
-        let contact = self.contact(Baseline, &self.plane(lateral, yaw));
+        let contact = self.contact(Baseline, &self.plane(Baseline, lateral, yaw));
         let [_, height] = contact.roll_and_height.numbers();
         height + self.rise(&contact, roll_offset)
     }
@@ -200,7 +200,7 @@ impl<'a> RigidMap<'a> {
         yaw: f64,
         roll: f64,
     ) -> (Coordinates, Places) {
-        let plane = self.plane(displacement.lateral, yaw);
+        let plane = self.plane(with, displacement.lateral, yaw);
         let contact = self.contact(with, &plane);
         let [roll_offset, above] = (Two::new([roll, displacement.vertical]) - contact.roll_and_height).numbers();
         let vertical = above - self.rise(&contact, roll_offset);

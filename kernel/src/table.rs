@@ -226,7 +226,7 @@ impl<'a> ContactTable<'a> {
         at: &Coordinates,
     ) -> [[f32; CHANNELS]; SLOTS] {
         let side = self.side(side);
-        let plane = side.rigid.plane(at.lateral, at.yaw);
+        let plane = side.rigid.plane(with, at.lateral, at.yaw);
         let (cell, _) = self.cell(with, &plane, at);
         let edges = edges(side.records, &cell);
         let blend = |edges| slots(with.blend(&edges, &cell, &side.scales, &mut MaybeUninit::uninit()));
@@ -369,7 +369,7 @@ impl<'a> ContactTable<'a> {
     /// The cell, and the axes that its place is clamped to.
     #[inline(always)]
     fn cell<I: Instructions>(&self, with: I, plane: &Places, at: &Coordinates) -> (Cell<I::Quad>, Flags) {
-        let section = self.section.locate(Two::new([at.roll_offset, at.vertical]));
+        let section = self.section.locate(with, Two::new([at.roll_offset, at.vertical]));
         // The flags of the four axes are the lowest four bits, in the axes' order.
         let axes = Flags::of_axes(plane.clamped | section.clamped << 2);
         (Cell::new(with, plane, &section, self.strides), axes)

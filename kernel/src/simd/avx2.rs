@@ -5,6 +5,7 @@ use core::arch::x86_64::*;
 use core::mem::{MaybeUninit, offset_of};
 
 use super::{Four, Two, WideQuad};
+use crate::axis::{BinBytes, Cells};
 use crate::blend::{Cell, Edges, LaneScales, Lanes};
 use crate::channel::{CHANNELS, SLOTS};
 use crate::contact::{Contact, Contacts};
@@ -53,6 +54,22 @@ impl Instructions for Avx2 {
         place: &'p mut MaybeUninit<Lanes>,
     ) -> &'p Lanes {
         super::blend_256(self, edges, cell, scales, place)
+    }
+
+    #[inline(always)]
+    fn cells(self, a: &BinBytes, b: &BinBytes) -> Cells {
+        // The pointers are those of sixteen bytes each, and the loads ask for no alignment.
+        unsafe {
+            let [a, b] = [_mm_loadu_si128(a.as_ptr().cast()), _mm_loadu_si128(b.as_ptr().cast())];
+            let numbers = _mm256_cvtps_pd(_mm_castsi128_ps(_mm_unpacklo_epi32(a, b)));
+            let offsets = _mm_add_epi32(a, b);
+            Cells {
+                start: Two(_mm256_castpd256_pd128(numbers)),
+                reciprocal: Two(_mm256_extractf128_pd::<1>(numbers)),
+                records: _mm_extract_epi32::<2>(offsets).cast_unsigned(),
+                rigid: _mm_extract_epi32::<3>(offsets).cast_unsigned(),
+            }
+        }
     }
 
     #[inline(always)]
