@@ -5,7 +5,7 @@ use core::fmt;
 use crate::error::TableError;
 use crate::instructions::{Baseline, Instructions};
 use crate::layout::{BIN, Strides};
-use crate::math::{Two, at_least, at_most, single};
+use crate::math::{Mask, Two, at_least, at_most, single};
 
 /// Most bins an axis can have.
 pub const MAX_BINS: usize = 4096;
@@ -143,9 +143,6 @@ impl fmt::Display for Bin {
         write!(f, "(start {start}, reciprocal {reciprocal}, records {records}, rigid map {rigid})")
     }
 }
-
-/// A bin for a place that a checked axis does not have.
-const NOTHING: &BinBytes = &[0; BIN];
 
 /// Least width of a bin in units of the axis' largest magnitude, 2⁻²²: a node's coordinate, rounded to `f64`, is then
 /// within 2⁻³¹ bins of where its bin begins, which is less than the weights can tell.
@@ -304,8 +301,9 @@ impl<'a> Axis<'a> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a bin's number")]
     pub fn locate(&self, x: f64) -> Place {
         let pair = AxisPair::new([*self; 2]);
-        let (places, [bin, _]) = (pair.locate(Baseline, Two::all(x)), pair.bins_of(Two::all(x)));
-        let (start, [fraction, _]) = (Bin::from_bytes(bin).start, places.fraction.numbers());
+        let places = pair.locate(Baseline, Two::all(x)).unwrap_or_else(|| Places::first([0.0; 2]));
+        let start = pair.bins_of(Two::all(x)).map_or(0.0, |[bin, _]| Bin::from_bytes(bin).start);
+        let [fraction, _] = places.fraction.numbers();
         let [unclamped, _] = places.unclamped().numbers();
         // Nodes lie where bins begin.
         let begin = bin_start(self.first, self.last, self.bins(), start as usize);
@@ -313,7 +311,7 @@ impl<'a> Axis<'a> {
             cell: self.nodes().skip(1).take_while(|node| *node <= begin).count(),
             fraction: at_most(at_least(fraction, 0.0), 1.0),
             unclamped,
-            clamped: places.clamped != 0,
+            clamped: places.clamped.bits() != 0,
         }
     }
 }
@@ -329,15 +327,14 @@ pub(crate) struct Places {
     pub(crate) fraction: Two,
     /// How far the coordinates lie outside their axes, in widths of the first or last cell.
     outside: Two,
-    /// Bit i says whether coordinate i lies outside its axis.
-    pub(crate) clamped: u8,
+    /// Which coordinates lie outside their axes.
+    pub(crate) clamped: Mask,
 }
 
 impl Places {
     /// The first cells, on no axis in particular.
-    #[cfg(test)]
     pub(crate) fn first(fraction: [f64; 2]) -> Self {
-        Self { records: 0, rigid: 0, fraction: Two::new(fraction), outside: Two::all(0.0), clamped: 0 }
+        Self { records: 0, rigid: 0, fraction: Two::new(fraction), outside: Two::all(0.0), clamped: Two::all(0.0).differs(Two::all(0.0)) }
     }
 
     /// The fractions not clamped, but to +-[`EXTRAPOLATION_LIMIT`].
@@ -408,15 +405,15 @@ impl<'a> AxisPair<'a> {
         x.at_least(Two::new(self.first)).at_most(Two::new(self.last))
     }
 
-    /// Bins of a position; that after the last one at the axis' end.
+    /// Bins of a position, that after the last one at the axis' end. Every position on a checked axis has one.
     #[inline(always)]
-    fn bins_at(&self, position: Two) -> [&'a BinBytes; 2] {
+    fn bins_at(&self, position: Two) -> Option<[&'a BinBytes; 2]> {
         let ([a, b], [bins_a, bins_b]) = (position.truncate(), self.bins);
-        [bins_a.get(a).unwrap_or(NOTHING), bins_b.get(b).unwrap_or(NOTHING)]
+        Some([bins_a.get(a)?, bins_b.get(b)?])
     }
 
     /// Bins that coordinates lie in.
-    fn bins_of(&self, x: Two) -> [&'a BinBytes; 2] {
+    fn bins_of(&self, x: Two) -> Option<[&'a BinBytes; 2]> {
         self.bins_at(self.position(self.clamp(x)))
     }
 
@@ -427,18 +424,18 @@ impl<'a> AxisPair<'a> {
     /// fraction = (position - start[bin]) reciprocal[bin]
     /// ```
     #[inline(always)]
-    pub(crate) fn locate<I: Instructions>(&self, with: I, x: Two) -> Places {
+    pub(crate) fn locate<I: Instructions>(&self, with: I, x: Two) -> Option<Places> {
         let inside = self.clamp(x);
         let position = self.position(inside);
-        let [a, b] = self.bins_at(position);
+        let [a, b] = self.bins_at(position)?;
         let Cells { start, reciprocal, records, rigid } = with.cells(a, b);
-        Places {
+        Some(Places {
             records,
             rigid,
             fraction: (position - start) * reciprocal,
             outside: (x - inside) * Two::new(self.bins_per_unit) * reciprocal,
             clamped: inside.differs(x),
-        }
+        })
     }
 }
 
@@ -475,7 +472,7 @@ mod tests {
         for (x, cell) in [(0.0, 0), (0.99, 0), (1.01, 1), (2.99, 1), (3.01, 2), (8.0, 2), (99.0, 2), (-1.0, 0)] {
             let x = x / 128.0;
             assert_eq!(axis.locate(x).cell, cell, "{x}");
-            let places = AxisPair::new([axis; 2]).locate(Baseline, Two::all(x));
+            let places = AxisPair::new([axis; 2]).locate(Baseline, Two::all(x)).unwrap();
             let offsets = [places.records / 256, places.rigid / 64].map(|cell| usize::try_from(cell).unwrap());
             assert_eq!(offsets, [cell; 2]);
         }

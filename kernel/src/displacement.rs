@@ -32,9 +32,9 @@ impl Attitude {
         attitude
     }
 
-    /// The same, and whether either angle was clamped.
+    /// The same, and in bits 0 and 1 whether yaw and roll were clamped.
     #[inline(always)]
-    pub(crate) fn by<I: Instructions>(with: I, yaw: f64, roll: f64) -> (Self, bool) {
+    pub(crate) fn by<I: Instructions>(with: I, yaw: f64, roll: f64) -> (Self, u8) {
         let ([yaw, roll], limited) = Angle::pair(with, Two::new([yaw, roll]));
         (Self { yaw, roll }, limited)
     }

@@ -72,6 +72,13 @@ impl Flags {
         Self(bits)
     }
 
+    /// The flag of the angles, any of whose two bits says that one is limited.
+    #[inline]
+    pub(crate) const fn of_angles(bits: u8) -> Self {
+        // 0 stays below bit 4, 1 to 3 do not.
+        Self((bits + (Self::ANGLE_LIMITED.0 - 1)) & Self::ANGLE_LIMITED.0)
+    }
+
     /// These flags where `condition` holds, none otherwise; without a branch.
     #[inline]
     pub(crate) const fn when(self, condition: bool) -> Self {

@@ -185,11 +185,11 @@ impl Two {
         Self(self.0.map(|x| f64::from_bits(x.to_bits() & mask)))
     }
 
-    /// Bit i says whether numbers i differ.
+    /// Where numbers differ.
     #[inline(always)]
-    pub(crate) fn differs(self, other: Self) -> u8 {
+    pub(crate) fn differs(self, other: Self) -> Mask {
         let ([a, b], [c, d]) = (self.0, other.0);
-        u8::from(a != c) | u8::from(b != d) << 1
+        Mask([a != c, b != d])
     }
 
     /// The integer parts of numbers from 0 to 2^31.
@@ -223,6 +223,19 @@ impl Two {
 }
 
 impl Mask {
+    /// Bit i for comparison i.
+    #[inline(always)]
+    pub(crate) fn bits(self) -> u8 {
+        let [a, b] = self.0;
+        u8::from(a) | u8::from(b) << 1
+    }
+
+    /// Those of another mask after its own.
+    #[inline(always)]
+    pub(crate) fn bits_of_both(self, next: Self) -> u8 {
+        self.bits() | next.bits() << 2
+    }
+
     #[inline(always)]
     pub(crate) fn and(self, other: Self) -> Self {
         let ([a, b], [c, d]) = (self.0, other.0);
@@ -383,7 +396,11 @@ mod tests {
                     let bits = |numbers: [f64; 2]| numbers.map(|x| if x.is_nan() { u64::MAX } else { x.to_bits() });
                     assert_eq!(bits(x.numbers()), bits(v.numbers()), "operation {index} of {a} and {b}");
                 }
-                assert_eq!(x.differs(y), v.differs(w));
+                assert_eq!(x.differs(y).bits(), v.differs(w).bits());
+                let both = (x.differs(y).bits_of_both(y.differs(y)), v.differs(w).bits_of_both(w.differs(w)));
+                assert_eq!(both.0, both.1);
+                let both = (y.differs(y).bits_of_both(x.differs(y)), w.differs(w).bits_of_both(v.differs(w)));
+                assert_eq!(both.0, both.1);
                 assert_eq!(x.single().map(f32::to_bits), v.single().map(f32::to_bits));
                 assert_eq!(q.single().numbers().map(f32::to_bits), r.single().numbers().map(f32::to_bits));
                 assert_eq!(q.all_within(1e9), r.all_within(1e9));

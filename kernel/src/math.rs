@@ -3,9 +3,9 @@
 use core::ops::{Add, Div, Mul, Sub};
 
 #[cfg(not(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable"))))]
-pub(crate) use crate::lanes::{Four, Quad, Two};
+pub(crate) use crate::lanes::{Four, Mask, Quad, Two};
 #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
-pub(crate) use crate::simd::{Four, Quad, Two};
+pub(crate) use crate::simd::{Four, Mask, Quad, Two};
 
 use crate::instructions::{Baseline, Instructions, Quads};
 
@@ -39,7 +39,7 @@ impl Angle {
         angle
     }
 
-    /// Two angles at once, and whether either was clamped.
+    /// Two angles at once, and in bit i whether angle i was clamped.
     ///
     /// ```text
     /// sin x = x (1 + p(x²))        1 - cos x = x² (1/2 + q(x²))
@@ -48,7 +48,7 @@ impl Angle {
     /// with p and q of the form t ((a + t b) + t² c), of least relative error over the domain (Remez), for the sines and the
     /// versines together. The coefficients are near -1/3!, 1/5!, -1/7! and -1/4!, 1/6!, -1/8!.
     #[inline(always)]
-    pub(crate) fn pair<I: Instructions>(with: I, angles: Two) -> ([Self; 2], bool) {
+    pub(crate) fn pair<I: Instructions>(with: I, angles: Two) -> ([Self; 2], u8) {
         let x = angles.at_least(Two::all(-ANGLE_LIMIT)).at_most(Two::all(ANGLE_LIMIT));
         let squares = x * x;
         let join = |halves| I::Quad::join(with, halves);
@@ -59,14 +59,14 @@ impl Angle {
         let p = t * (low + (t * t) * both(-0.000_198_330_005_544_807_9, -2.479_331_774_056_942e-5));
         let [sin, versine] = (join([x, squares]) * (both(1.0, 0.5) + p)).halves();
         let cos = Two::all(1.0) - versine;
-        let limited = x.differs(angles);
+        let limited = x.differs(angles).bits();
         let ([x0, x1], [s0, s1], [c0, c1]) = (x.numbers(), sin.numbers(), cos.numbers());
         let [v0, v1] = versine.numbers();
         let pair = [
             Self { value: x0, sin: s0, cos: c0, versine: v0, limited: limited & 1 != 0 },
             Self { value: x1, sin: s1, cos: c1, versine: v1, limited: limited & 2 != 0 },
         ];
-        (pair, limited != 0)
+        (pair, limited)
     }
 }
 

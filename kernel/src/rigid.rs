@@ -38,9 +38,6 @@ pub struct RigidMap<'a> {
     nodes: &'a [u8],
 }
 
-/// Nodes for a cell that a checked map does not have.
-const NOTHING: &[u8; 2 * RIGID] = &[0; 2 * RIGID];
-
 /// Parts that the intervals of two axes are divided into. Aligned as [`AxisPair`] is.
 #[derive(Clone, Copy)]
 #[repr(C, align(16))]
@@ -131,26 +128,28 @@ impl<'a> RigidMap<'a> {
 
     /// Places of lateral displacement and yaw on the records' axes.
     #[inline(always)]
-    pub(crate) fn plane<I: Instructions>(&self, with: I, lateral: f64, yaw: f64) -> Places {
+    pub(crate) fn plane<I: Instructions>(&self, with: I, lateral: f64, yaw: f64) -> Option<Places> {
         self.plane.locate(with, Two::new([lateral, yaw]))
     }
 
-    /// Bilinear between the nodes around a place.
+    /// Bilinear between the nodes around a place; every place on a checked map has them.
     #[inline(always)]
-    fn contact<I: Instructions>(&self, with: I, places: &Places) -> RigidContact {
+    fn contact<I: Instructions>(&self, with: I, places: &Places) -> Option<RigidContact> {
         let (bytes, fractions) = self.parts.of(with, places.fraction, &self.strides);
         let [u, psi] = fractions.numbers();
         let [row, ..] = self.strides;
-        // Every cell of a checked map has its corners.
-        let [low, high] = two(self.nodes, places.rigid + bytes, row).unwrap_or([NOTHING; 2]);
+        let [low, high] = two::<_, { 2 * RIGID }>(self.nodes, places.rigid + bytes, row)?;
         // Not by `map` of arrays, which a build without link-time optimisation may call instead of inlining.
-        let (Some([a, b]), Some([c, d])) = (low.as_chunks().0.first_chunk(), high.as_chunks().0.first_chunk()) else {
-            return RigidContact { roll_and_height: Two::all(0.0), slopes: Two::all(0.0) };
-        };
+        let ([a, b], [c, d]) = (low.as_chunks().0.first_chunk()?, high.as_chunks().0.first_chunk()?);
         let node = |bytes| I::Quad::of_singles(with, bytes);
         let along = |low, high| lerp(with, node(low), node(high), u);
         let [roll_and_height, slopes] = lerp(with, along(a, c), along(b, d), psi).halves();
-        RigidContact { roll_and_height, slopes }
+        Some(RigidContact { roll_and_height, slopes })
+    }
+
+    fn contact_at(&self, lateral: f64, yaw: f64) -> RigidContact {
+        let nowhere = RigidContact { roll_and_height: Two::all(0.0), slopes: Two::all(0.0) };
+        self.plane(Baseline, lateral, yaw).and_then(|plane| self.contact(Baseline, &plane)).unwrap_or(nowhere)
     }
 
     /// h1 ρ + h2 ρ² with the roll offset ρ clamped to its axis.
@@ -165,7 +164,7 @@ impl<'a> RigidMap<'a> {
     #[inline]
     #[must_use]
     pub fn roll(&self, lateral: f64, yaw: f64) -> f64 {
-        let [roll, _] = self.contact(Baseline, &self.plane(Baseline, lateral, yaw)).roll_and_height.numbers();
+        let [roll, _] = self.contact_at(lateral, yaw).roll_and_height.numbers();
         roll
     }
 
@@ -174,7 +173,7 @@ impl<'a> RigidMap<'a> {
     #[inline]
     #[must_use]
     pub fn vertical(&self, lateral: f64, yaw: f64, roll_offset: f64) -> f64 {
-        let contact = self.contact(Baseline, &self.plane(Baseline, lateral, yaw));
+        let contact = self.contact_at(lateral, yaw);
         let [_, height] = contact.roll_and_height.numbers();
         height + self.rise(&contact, roll_offset)
     }
@@ -188,7 +187,7 @@ impl<'a> RigidMap<'a> {
     #[inline(always)]
     #[must_use]
     pub fn coordinates(&self, displacement: &Displacement, yaw: f64, roll: f64) -> Coordinates {
-        self.locate(Baseline, displacement, yaw, roll).0
+        self.locate(Baseline, displacement, yaw, roll).map_or(Coordinates::default(), |(coordinates, _)| coordinates)
     }
 
     /// [`RigidMap::coordinates`] with the places of lateral and yaw found on the way.
@@ -199,12 +198,12 @@ impl<'a> RigidMap<'a> {
         displacement: &Displacement,
         yaw: f64,
         roll: f64,
-    ) -> (Coordinates, Places) {
-        let plane = self.plane(with, displacement.lateral, yaw);
-        let contact = self.contact(with, &plane);
+    ) -> Option<(Coordinates, Places)> {
+        let plane = self.plane(with, displacement.lateral, yaw)?;
+        let contact = self.contact(with, &plane)?;
         let [roll_offset, above] = (Two::new([roll, displacement.vertical]) - contact.roll_and_height).numbers();
         let vertical = above - self.rise(&contact, roll_offset);
-        (Coordinates { lateral: displacement.lateral, yaw, roll_offset, vertical }, plane)
+        Some((Coordinates { lateral: displacement.lateral, yaw, roll_offset, vertical }, plane))
     }
 
     /// The canonical pose at table coordinates: the inverse of [`RigidMap::coordinates`]. A compiler samples its

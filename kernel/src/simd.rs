@@ -188,9 +188,8 @@ impl Two {
     }
 
     #[inline(always)]
-    #[expect(clippy::cast_sign_loss, clippy::cast_possible_truncation, reason = "two bits")]
-    pub(crate) fn differs(self, other: Self) -> u8 {
-        unsafe { _mm_movemask_pd(_mm_cmpneq_pd(self.0, other.0)) as u8 }
+    pub(crate) fn differs(self, other: Self) -> Mask {
+        Mask(made(unsafe { _mm_cmpneq_pd(self.0, other.0) }))
     }
 
     #[inline(always)]
@@ -227,6 +226,22 @@ impl Two {
 pub(crate) struct Mask(__m128d);
 
 impl Mask {
+    #[inline(always)]
+    #[expect(clippy::cast_sign_loss, clippy::cast_possible_truncation, reason = "two bits")]
+    pub(crate) fn bits(self) -> u8 {
+        unsafe { _mm_movemask_pd(self.0) as u8 }
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_sign_loss, clippy::cast_possible_truncation, reason = "four bits")]
+    pub(crate) fn bits_of_both(self, next: Self) -> u8 {
+        unsafe {
+            // Saturation leaves all ones and all zeros as they are.
+            let both = _mm_packs_epi32(_mm_castpd_si128(self.0), _mm_castpd_si128(next.0));
+            _mm_movemask_ps(_mm_castsi128_ps(both)) as u8
+        }
+    }
+
     #[inline(always)]
     pub(crate) fn and(self, other: Self) -> Self {
         Self(unsafe { _mm_and_pd(self.0, other.0) })
@@ -290,6 +305,30 @@ pub(crate) fn opaque<T>(list: &[T]) -> &[T] {
         core::arch::asm!("/* {} */", inout(reg) start, options(nomem, nostack, preserves_flags, pure));
         core::slice::from_raw_parts(start, list.len())
     }
+}
+
+/// The same vector, which the compiler must make here: it would keep those that it is made of, for later.
+#[inline(always)]
+fn made(vector: __m128d) -> __m128d {
+    let mut vector = vector;
+    // SAFETY: no instruction at all.
+    #[cfg(not(miri))]
+    unsafe {
+        core::arch::asm!("/* {} */", inout(xmm_reg) vector, options(nomem, nostack, preserves_flags));
+    }
+    vector
+}
+
+/// The same bits, as [`made`].
+#[inline(always)]
+fn made_bits(bits: i32) -> i32 {
+    let mut bits = bits;
+    // SAFETY: no instruction at all.
+    #[cfg(not(miri))]
+    unsafe {
+        core::arch::asm!("/* {:e} */", inout(reg) bits, options(nomem, nostack, preserves_flags));
+    }
+    bits
 }
 
 /// Asks for the cache line that holds a record's first byte.

@@ -48,11 +48,11 @@ struct SideData<'a> {
 }
 
 /// Where a pose lies in the table.
-struct Located {
+struct Located<'f> {
     valid: bool,
-    /// Whether yaw or roll was limited.
-    limited: bool,
-    frame: Frame,
+    /// In bits 0 and 1 whether yaw and roll were limited.
+    limited: u8,
+    frame: &'f Frame,
     coordinates: Coordinates,
     /// The places of lateral and yaw.
     plane: Places,
@@ -197,7 +197,10 @@ impl<'a> ContactTable<'a> {
     /// Coordinates of a pose in the table, mirrored to the right wheel with yaw >= 0 and not clamped to the table.
     #[must_use]
     pub fn coordinates(&self, side: Side, pose: &Pose) -> Coordinates {
-        self.locate(Baseline, side, pose).coordinates
+        {
+            let mut frame = MaybeUninit::uninit();
+            self.locate(Baseline, side, pose, &mut frame).map_or(Coordinates::default(), |located| located.coordinates)
+        }
     }
 
     /// The integers of the record at a node (lateral, yaw, roll offset, vertical); none beyond the axes.
@@ -227,10 +230,9 @@ impl<'a> ContactTable<'a> {
     ) -> [[f32; CHANNELS]; SLOTS] {
         let side = self.side(side);
         let plane = side.rigid.plane(with, at.lateral, at.yaw);
-        let (cell, _) = self.cell(with, &plane, at);
-        let edges = edges(side.records, &cell);
-        let blend = |edges| slots(with.blend(&edges, &cell, &side.scales, &mut MaybeUninit::uninit()));
-        edges.map_or([[0.0; CHANNELS]; SLOTS], blend)
+        let Some((cell, _)) = plane.as_ref().and_then(|plane| self.cell(with, plane, at)) else { return [[0.0; CHANNELS]; SLOTS] };
+        let Some(edges) = edges(side.records, &cell) else { return [[0.0; CHANNELS]; SLOTS] };
+        slots(with.blend(&edges, &cell, &side.scales, &mut MaybeUninit::uninit()))
     }
 
     /// Asks for the sixteen records of a pose, so that they are in the cache when the lookup comes, while the caller
@@ -238,9 +240,9 @@ impl<'a> ContactTable<'a> {
     /// in-order core waits for that, and then a lookup alone is the better choice.
     #[inline]
     pub fn prefetch(&self, side: Side, pose: &Pose) {
-        let located = self.locate(Baseline, side, pose);
-        let (cell, _) = self.cell(Baseline, &located.plane, &located.coordinates);
-        self.prefetch_cell(side, &cell);
+        if let Some(prepared) = self.prepare(Baseline, side, pose) {
+            self.prefetch_cell(side, &prepared.cell);
+        }
     }
 
     #[inline(always)]
@@ -294,12 +296,12 @@ impl<'a> ContactTable<'a> {
     pub(crate) fn look_up<I: Instructions>(&self, with: I, side: Side, pose: &Pose, contacts: &mut Contacts) {
         let mut memory = (MaybeUninit::uninit(), MaybeUninit::uninit());
         let (frame, lanes) = escape(&mut memory);
-        let located = self.locate(with, side, pose);
-        let frame = frame.write(located.frame);
-        compiler_fence(Ordering::SeqCst);
-        let (cell, axes) = self.cell(with, &located.plane, &located.coordinates);
+        // Every place in a checked table has its cell.
+        let Some(located) = self.locate(with, side, pose, frame) else { return *contacts = Contacts::NONE };
+        let cell = self.cell(with, &located.plane, &located.coordinates);
+        let Some((cell, axes)) = cell else { return *contacts = Contacts::NONE };
         let flags = located.remarks(axes);
-        self.finish(with, side, (frame, &cell, flags), lanes, contacts);
+        self.finish(with, side, (located.frame, &cell, flags), lanes, contacts);
     }
 
     /// [`ContactTable::contacts_many`] in the same way.
@@ -308,23 +310,37 @@ impl<'a> ContactTable<'a> {
         let mut memory = MaybeUninit::uninit();
         let lanes = escape(&mut memory);
         let mut contacts = contacts.iter_mut();
-        let mut ahead = heapless::Deque::<(Side, Prepared<I::Quad>), AHEAD>::new();
+        let mut ahead = heapless::Deque::<(Side, Option<Prepared<I::Quad>>), AHEAD>::new();
+        let mut finish = |side, prepared: &Option<Prepared<I::Quad>>, contacts: &mut Contacts| match prepared {
+            Some(one) => self.finish(with, side, (&one.frame, &one.cell, one.flags), lanes, contacts),
+            None => *contacts = Contacts::NONE,
+        };
         for (side, pose) in wheels.iter().take(contacts.len()) {
             if ahead.is_full()
                 && let (Some((side, one)), Some(contacts)) = (ahead.pop_front(), contacts.next())
             {
-                self.finish(with, side, (&one.frame, &one.cell, one.flags), lanes, contacts);
+                finish(side, &one, contacts);
             }
-            let located = self.locate(with, *side, pose);
-            let (cell, axes) = self.cell(with, &located.plane, &located.coordinates);
-            self.prefetch_cell(*side, &cell);
-            let flags = located.remarks(axes);
+            let prepared = self.prepare(with, *side, pose);
+            if let Some(prepared) = &prepared {
+                self.prefetch_cell(*side, &prepared.cell);
+            }
             // There is room.
-            let _ = ahead.push_back((*side, Prepared { frame: located.frame, cell, flags }));
+            let _ = ahead.push_back((*side, prepared));
         }
         for ((side, one), contacts) in ahead.iter().zip(contacts) {
-            self.finish(with, *side, (&one.frame, &one.cell, one.flags), lanes, contacts);
+            finish(*side, one, contacts);
         }
+    }
+
+    /// All of a lookup up to the records; every place in a checked table has its cell.
+    #[inline(always)]
+    fn prepare<I: Instructions>(&self, with: I, side: Side, pose: &Pose) -> Option<Prepared<I::Quad>> {
+        let mut frame = MaybeUninit::uninit();
+        let located = self.locate(with, side, pose, &mut frame)?;
+        let (cell, axes) = self.cell(with, &located.plane, &located.coordinates)?;
+        let flags = located.remarks(axes);
+        Some(Prepared { frame: *located.frame, cell, flags })
     }
 
     /// All of a lookup from the records on.
@@ -354,33 +370,43 @@ impl<'a> ContactTable<'a> {
     }
 
     #[inline(always)]
-    fn locate<I: Instructions>(&self, with: I, side: Side, pose: &Pose) -> Located {
+    fn locate<'f, I: Instructions>(
+        &self,
+        with: I,
+        side: Side,
+        pose: &Pose,
+        frame: &'f mut MaybeUninit<Frame>,
+    ) -> Option<Located<'f>> {
         let data = self.side(side);
         // An invalid pose costs the same: what is no number is limited like any other.
         let (canonical, valid) = pose.mirrored(with, &data.signs);
         let (attitude, limited) = Attitude::by(with, canonical.pose.yaw, canonical.pose.roll);
         let turned = Turned::new(&data.geometry, &attitude);
         let displacement = Displacement::of(&canonical.pose, &turned.displacement);
-        let (coordinates, plane) = data.rigid.locate(with, &displacement, attitude.yaw.value, attitude.roll.value);
-        let frame = Frame::new(&data.geometry, &attitude, &displacement, turned.arm, canonical.longitudinal_sign);
-        Located { valid, limited, frame, coordinates, plane }
+        let (psi, phi) = (attitude.yaw.value, attitude.roll.value);
+        // In memory before the registers are wanted for other things.
+        let frame =
+            frame.write(Frame::new(&data.geometry, &attitude, &displacement, turned.arm, canonical.longitudinal_sign));
+        compiler_fence(Ordering::SeqCst);
+        let (coordinates, plane) = data.rigid.locate(with, &displacement, psi, phi)?;
+        Some(Located { valid, limited, frame, coordinates, plane })
     }
 
     /// The cell, and the axes that its place is clamped to.
     #[inline(always)]
-    fn cell<I: Instructions>(&self, with: I, plane: &Places, at: &Coordinates) -> (Cell<I::Quad>, Flags) {
-        let section = self.section.locate(with, Two::new([at.roll_offset, at.vertical]));
+    fn cell<I: Instructions>(&self, with: I, plane: &Places, at: &Coordinates) -> Option<(Cell<I::Quad>, Flags)> {
+        let section = self.section.locate(with, Two::new([at.roll_offset, at.vertical]))?;
         // The flags of the four axes are the lowest four bits, in the axes' order.
-        let axes = Flags::of_axes(plane.clamped | section.clamped << 2);
-        (Cell::new(with, plane, &section, self.strides), axes)
+        let axes = Flags::of_axes(plane.clamped.bits_of_both(section.clamped));
+        Some((Cell::new(with, plane, &section, self.strides), axes))
     }
 }
 
-impl Located {
+impl Located<'_> {
     /// Remarks about the pose, given those about the axes.
     #[inline(always)]
     fn remarks(&self, axes: Flags) -> Flags {
-        let remarks = axes | Flags::ANGLE_LIMITED.when(self.limited);
+        let remarks = axes | Flags::of_angles(self.limited);
         remarks.when(self.valid) | Flags::INVALID_INPUT.when(!self.valid)
     }
 }

@@ -3,7 +3,7 @@
 use core::arch::x86_64::*;
 use core::ops::{Add, Mul, Sub};
 
-use super::{Avx2, Four, Two};
+use super::{Avx2, Four, Two, made, made_bits};
 use crate::blend::ONE;
 use crate::instructions::Quads;
 
@@ -51,7 +51,7 @@ impl Quad {
         unsafe {
             // Not at most: what is no number is not.
             let [low, high] = self.0.map(|x| _mm_cmpnle_pd(_mm_andnot_pd(_mm_set1_pd(-0.0), x), _mm_set1_pd(limit)));
-            _mm_movemask_pd(_mm_or_pd(low, high)) == 0
+            _mm_movemask_pd(made(_mm_or_pd(low, high))) == 0
         }
     }
 
@@ -131,7 +131,7 @@ impl Quads<Avx2> for WideQuad {
         unsafe {
             // Not at most: what is no number is not.
             let size = _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0);
-            _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_NLE_UQ>(size, _mm256_set1_pd(limit))) == 0
+            made_bits(_mm256_movemask_pd(_mm256_cmp_pd::<_CMP_NLE_UQ>(size, _mm256_set1_pd(limit)))) == 0
         }
     }
 
