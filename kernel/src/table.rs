@@ -359,7 +359,9 @@ impl<'a> ContactTable<'a> {
         // Every cell of a checked table has its records.
         let Some(edges) = edges(data.records, cell) else { return *contacts = Contacts::NONE };
         let lanes = with.blend(&edges, cell, &data.scales, lanes);
-        let force = contacts.fill(with, lanes, &data.wheel, frame, flags != Flags::INVALID_INPUT);
+        // Read again, so that no register holds it meanwhile.
+        let valid = contacts.flags != Flags::INVALID_INPUT;
+        let force = contacts.fill(with, lanes, &data.wheel, frame, valid);
         let conformal = lanes.0.get(CONFORMAL_LANE).copied().unwrap_or_default();
         // Above zero, as an integer's bits would be.
         contacts.flags |= Flags::CONFORMAL.when((conformal.to_bits().cast_signed() > 0) & force);

@@ -169,14 +169,14 @@ pub(crate) fn blend_256<'p>(
 ) -> &'p Lanes {
     unsafe {
         let edges = edge_pairs(edges);
-        // In memory until they are wanted, as with 128 bits.
-        let mut t = [cell.fraction, cell.unclamped];
-        let t = &*escape(&mut t);
+        // In memory until they are wanted, as with 128 bits: where the last two lanes will be.
+        let t: *mut f32 = place.as_mut_ptr().cast::<f32>().add(LANES - 2);
+        (*t, *t.add(1)) = (cell.fraction, cell.unclamped);
         let [coarse, fine] = wide_pairs(cell.sums.map(WideQuad::rounded));
         let ([mut first, second], fine) = sixteen::<0>(&edges, &coarse, &fine);
         let step = _mm256_set1_ps(FINE_STEP);
-        let clamped = _mm256_broadcast_ss(&t[0]);
-        let unclamped = _mm256_blend_ps::<UNCLAMPED>(clamped, _mm256_broadcast_ss(&t[1]));
+        let clamped = _mm256_broadcast_ss(&*t);
+        let unclamped = _mm256_blend_ps::<UNCLAMPED>(clamped, _mm256_broadcast_ss(&*t.add(1)));
         first.base = _mm256_add_ps(first.base, _mm256_mul_ps(fine.base, step));
         first.rise = _mm256_add_ps(first.rise, _mm256_mul_ps(fine.rise, step));
         first.store::<0>(unclamped, scales, place);
