@@ -81,6 +81,17 @@ impl LaneScales {
     }
 }
 
+impl LaneScales {
+    /// Has contact angles multiplied by a side's sign.
+    pub(crate) fn turn_angles(&mut self, sign: f32) {
+        for lane in Slot::ALL.map(|slot| Channel::Angle.lane(slot)) {
+            for scale in [self.offsets.get_mut(lane), self.steps.get_mut(lane)].into_iter().flatten() {
+                *scale *= sign;
+            }
+        }
+    }
+}
+
 /// The cell of the records' grid that a coordinate lies in.
 #[derive(Clone, Copy)]
 pub(crate) struct Cell<Q = Quad> {

@@ -117,7 +117,8 @@ impl<'a> IntoIterator for &'a Contacts {
     }
 }
 
-/// Radius of a wheel and the factor of lateral positions and contact angles that mirrors back, four times.
+/// Radius of a wheel and the factor of lateral positions that mirrors back, four times. (Contact angles are mirrored by
+/// the scales, [`LaneScales::turn_angles`](crate::blend::LaneScales::turn_angles).)
 #[derive(Clone, Copy)]
 pub(crate) struct Wheel {
     radius: Four,
@@ -184,8 +185,7 @@ fn rebuild(lanes: &Lanes, wheel: &Wheel, frame: &Frame) -> Candidates {
     let [_, _, _, _, e, s, radius_offset, _] = blocks.each_ref().map(Four::load);
     let rolling_radius = wheel.radius + radius_offset;
     let [x, y, z] = position(e, s, radius_offset, rolling_radius, frame);
-    let lateral_sign = wheel.lateral_sign;
-    let y = lateral_sign * y;
+    let y = wheel.lateral_sign * y;
     // Read again, so that no register holds them meanwhile.
     compiler_fence(Ordering::SeqCst);
     let [indentation, c, k, k_across, e, s, _, angle] = blocks.each_ref().map(Four::load);
@@ -198,7 +198,7 @@ fn rebuild(lanes: &Lanes, wheel: &Wheel, frame: &Frame) -> Candidates {
     let normal_force = c.at_least(zero) * (depth * root);
     Candidates {
         first: [normal_force, indentation, x, y],
-        second: [z, lateral_sign * angle, rolling_radius, s],
+        second: [z, angle, rolling_radius, s],
         third: [k.at_least(zero) * root, k_across.at_least(zero) * root, wheel_curvature, rail_curvature],
     }
 }

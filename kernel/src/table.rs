@@ -15,23 +15,24 @@ use crate::flags::Flags;
 use crate::header::{Header, SideHeader};
 use crate::instructions::{Avx2, Baseline, InstructionSet, Instructions, escape};
 use crate::layout::{RECORD, Sections, SideSections};
-use crate::math::Two;
+use crate::math::{Two, single};
 use crate::pose::{Pose, PoseSigns, Side, WheelGeometry};
 use crate::rigid::{Coordinates, RigidMap};
 
 /// A contact table, read in place from a borrowed image.
 #[derive(Clone)]
+#[repr(C)]
 pub struct ContactTable<'a> {
-    header: Header<'a>,
-    axes: [Axis<'a>; 4],
+    right: SideData<'a>,
+    left: SideData<'a>,
     /// Roll offset and vertical.
     section: AxisPair<'a>,
     /// Bytes from one record to the next along lateral, yaw and roll offset.
     strides: [u32; 3],
     /// Whether lookups may use AVX2.
     avx2: Option<Avx2>,
-    right: SideData<'a>,
-    left: SideData<'a>,
+    axes: [Axis<'a>; 4],
+    header: Header<'a>,
 }
 
 /// What a lookup needs of a side.
@@ -228,11 +229,11 @@ impl<'a> ContactTable<'a> {
         side: Side,
         at: &Coordinates,
     ) -> [[f32; CHANNELS]; SLOTS] {
-        let side = self.side(side);
+        let (of, side) = (side, self.side(side));
         let plane = side.rigid.plane(with, at.lateral, at.yaw);
         let Some((cell, _)) = plane.as_ref().and_then(|plane| self.cell(with, plane, at)) else { return [[0.0; CHANNELS]; SLOTS] };
         let Some(edges) = edges(side.records, &cell) else { return [[0.0; CHANNELS]; SLOTS] };
-        slots(with.blend(&edges, &cell, &side.scales, &mut MaybeUninit::uninit()))
+        slots(with.blend(&edges, &cell, &side.scales, &mut MaybeUninit::uninit()), of)
     }
 
     /// Asks for the sixteen records of a pose, so that they are in the cache when the lookup comes, while the caller
@@ -447,24 +448,28 @@ impl<'a> SideData<'a> {
         self.rigid = rigid.ok_or(TableError::Sections { needed: Some(length), length })?;
         self.records = check::records(image, &place.records)?.as_flattened();
         self.geometry = header.geometry;
-        self.turn(side);
         self.scales.fill(&header.scales);
+        self.turn(side);
         Ok(())
     }
 
-    /// Makes the data those of a side.
+    /// Makes the data, whose scales are those of the records, those of a side.
     fn turn(&mut self, side: Side) {
+        self.scales.turn_angles(single(side.sign()));
         self.signs = PoseSigns::new(side);
         self.wheel = Wheel::new(&self.geometry, side);
     }
 }
 
-/// The lanes as slots of channels.
-fn slots(lanes: &Lanes) -> [[f32; CHANNELS]; SLOTS] {
+/// The lanes of a wheel as slots of channels.
+fn slots(lanes: &Lanes, side: Side) -> [[f32; CHANNELS]; SLOTS] {
     let mut slots = [[0.0; CHANNELS]; SLOTS];
     for (slot, values) in Slot::ALL.into_iter().zip(&mut slots) {
         for (channel, value) in Channel::ALL.into_iter().zip(values) {
             *value = lanes.0.get(channel.lane(slot)).copied().unwrap_or_default();
+            if channel == Channel::Angle {
+                *value *= single(side.sign());
+            }
         }
     }
     slots

@@ -144,8 +144,8 @@ impl Quads<Avx2> for WideQuad {
         let begin = u * numbers([0.0, 0.0, ONE, ONE]);
         let length = numbers([0.0, 0.0, 0.0, ONE]) + u * numbers([0.0, ONE, 0.0, -ONE]);
         let begin = begin + length * p;
-        let one = numbers([ONE; 4]).0;
-        let end = Self(unsafe { _mm256_blend_pd::<0b1000>(_mm256_permute4x64_pd::<0b11_11_10_01>(begin.0), one) });
+        // The first begin is zero.
+        let end = Self(unsafe { _mm256_permute4x64_pd::<0b00_11_10_01>(begin.0) }) + numbers([0.0, 0.0, 0.0, ONE]);
         [begin + (end - begin) * Self::all(with, roll), end]
     }
 }
