@@ -219,6 +219,8 @@ fn rebuild(lanes: &Lanes, wheel: &Wheel, frame: &Frame) -> Candidates {
 fn position(e: Four, s: Four, radius_offset: Four, radius: Four, frame: &Frame) -> [Four; 3] {
     let [sin_psi, sin_phi, cos_psi, cos_phi] = frame.rotation.spread();
     let [place_y, place_z, arm, sign] = frame.place.spread();
+    // e and ψ with their signs before the mirror at x = 0: y, and what is squared, are the same with both signs turned.
+    let e = sign * e;
     // h = (R - r0) - e² / (R + sqrt(R² - e²))
     let e_squared = e * e;
     let h = radius_offset - e_squared / (radius + (radius * radius - e_squared).at_least(Four::all(0.0)).sqrt());
@@ -226,7 +228,7 @@ fn position(e: Four, s: Four, radius_offset: Four, radius: Four, frame: &Frame) 
     let k = s * cos_phi - h * sin_phi;
     [
         // x = e cos ψ - (b cos φ - r0 sin φ + k) sin ψ
-        sign * (e * cos_psi - (arm + k) * sin_psi),
+        e * cos_psi - (arm + k) * sin_psi,
         // y = u + b + e sin ψ + k cos ψ
         place_y + (e * sin_psi + k * cos_psi),
         // z = w + s sin φ + h cos φ

@@ -34,7 +34,7 @@ impl Attitude {
 
     /// The same, and in bits 0 and 1 whether yaw and roll were clamped.
     #[inline(always)]
-    pub(crate) fn by<I: Instructions>(with: I, yaw: f64, roll: f64) -> (Self, u8) {
+    pub(crate) fn by<I: Instructions>(with: I, yaw: f64, roll: f64) -> (Self, u32) {
         let ([yaw, roll], limited) = Angle::pair(with, Two::new([yaw, roll]));
         (Self { yaw, roll }, limited)
     }

@@ -66,17 +66,15 @@ impl Flags {
         Self(bits & 0x7f)
     }
 
-    /// The flags of the records' axes, bit i for axis i.
-    #[inline]
-    pub(crate) const fn of_axes(bits: u8) -> Self {
-        Self(bits)
-    }
-
-    /// The flag of the angles, any of whose two bits says that one is limited.
-    #[inline]
-    pub(crate) const fn of_angles(bits: u8) -> Self {
-        // 0 stays below bit 4, 1 to 3 do not.
-        Self((bits + (Self::ANGLE_LIMITED.0 - 1)) & Self::ANGLE_LIMITED.0)
+    /// Remarks about a pose: bit i of `axes` for axis i of the records, any of two bits for angles that are limited; those
+    /// of an invalid pose say nothing.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "bits of flags")]
+    pub(crate) const fn of_pose(axes: u32, limited_angles: u32, valid: bool) -> Self {
+        const ANGLE: u32 = Flags::ANGLE_LIMITED.0 as u32;
+        // 0 stays below the flag's bit, 1 to 3 do not.
+        let remarks = axes | ((limited_angles + (ANGLE - 1)) & ANGLE);
+        Self(if valid { remarks } else { Self::INVALID_INPUT.0 as u32 } as u8)
     }
 
     /// These flags where `condition` holds, none otherwise; without a branch.

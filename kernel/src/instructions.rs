@@ -100,6 +100,9 @@ pub(crate) trait Quads<I>: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<
     /// Four little-endian `f32`.
     fn of_singles(with: I, bytes: &[u8; 16]) -> Self;
     fn join(with: I, halves: [Two; 2]) -> Self;
+    /// The same, which the compiler must take for any four numbers where they are one vector: otherwise it may take the
+    /// vector apart again for what is made of it.
+    fn held(self) -> Self;
     fn halves(self) -> [Two; 2];
     /// Whether all are numbers at most this large.
     fn all_within(self, limit: f64) -> bool;
@@ -174,6 +177,11 @@ impl Quads<Baseline> for Quad {
     #[inline(always)]
     fn of_singles(_: Baseline, bytes: &[u8; 16]) -> Self {
         Self::of_singles(bytes)
+    }
+
+    #[inline(always)]
+    fn held(self) -> Self {
+        self
     }
 
     #[inline(always)]

@@ -225,14 +225,14 @@ impl Two {
 impl Mask {
     /// Bit i for comparison i.
     #[inline(always)]
-    pub(crate) fn bits(self) -> u8 {
+    pub(crate) fn bits(self) -> u32 {
         let [a, b] = self.0;
-        u8::from(a) | u8::from(b) << 1
+        u32::from(a) | u32::from(b) << 1
     }
 
     /// Those of another mask after its own.
     #[inline(always)]
-    pub(crate) fn bits_of_both(self, next: Self) -> u8 {
+    pub(crate) fn bits_of_both(self, next: Self) -> u32 {
         self.bits() | next.bits() << 2
     }
 

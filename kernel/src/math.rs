@@ -48,15 +48,16 @@ impl Angle {
     /// with p and q of the form t ((a + t b) + t² c), of least relative error over the domain (Remez), for the sines and the
     /// versines together. The coefficients are near -1/3!, 1/5!, -1/7! and -1/4!, 1/6!, -1/8!.
     #[inline(always)]
-    pub(crate) fn pair<I: Instructions>(with: I, angles: Two) -> ([Self; 2], u8) {
+    pub(crate) fn pair<I: Instructions>(with: I, angles: Two) -> ([Self; 2], u32) {
         let x = angles.at_least(Two::all(-ANGLE_LIMIT)).at_most(Two::all(ANGLE_LIMIT));
-        let squares = x * x;
         let join = |halves| I::Quad::join(with, halves);
         let both = |sine: f64, versine: f64| join([Two::all(sine), Two::all(versine)]);
-        let t = join([squares, squares]);
+        let twice = join([x, x]).held();
+        let t = twice * twice;
         let low = both(-0.166_666_666_664_738_45, -0.041_666_666_666_473_83)
             + t * both(0.008_333_332_584_404_593, 0.001_388_888_813_992_647);
         let p = t * (low + (t * t) * both(-0.000_198_330_005_544_807_9, -2.479_331_774_056_942e-5));
+        let ([x, _], [_, squares]) = (twice.halves(), t.halves());
         let [sin, versine] = (join([x, squares]) * (both(1.0, 0.5) + p)).halves();
         let cos = Two::all(1.0) - versine;
         let limited = x.differs(angles).bits();

@@ -92,25 +92,29 @@ impl Pose {
     #[inline]
     #[must_use]
     pub fn canonical(&self, side: Side) -> Canonical {
-        let (canonical, _) = self.mirrored(Baseline, &PoseSigns::new(side));
-        canonical
+        let (pose, _) = self.mirrored(Baseline, &PoseSigns::new(side));
+        Canonical {
+            pose: Self { yaw: pose.yaw.abs(), ..pose },
+            lateral_sign: side.sign(),
+            longitudinal_sign: longitudinal_sign(pose.yaw),
+        }
     }
 
-    /// The same, and whether the pose is valid.
+    /// The pose as the right wheel sees it, its yaw of either sign, and whether it is valid.
     #[inline(always)]
-    pub(crate) fn mirrored<I: Instructions>(&self, with: I, signs: &PoseSigns) -> (Canonical, bool) {
+    pub(crate) fn mirrored<I: Instructions>(&self, with: I, signs: &PoseSigns) -> (Self, bool) {
         let all = I::Quad::new(with, self.numbers());
-        let [place, angles] = Two::transpose((all * I::Quad::new(with, signs.0)).halves());
+        let [place, angles] = Two::transpose((all * I::Quad::new(with, signs.0)).held().halves());
         let ([lateral, vertical], [yaw, roll]) = (place.numbers(), angles.numbers());
-        let [lateral_sign, ..] = signs.0;
-        let canonical = Canonical {
-            pose: Self { lateral, yaw: yaw.abs(), vertical, roll },
-            lateral_sign,
-            // The sum makes -0 positive.
-            longitudinal_sign: 1.0_f64.copysign(yaw + 0.0),
-        };
-        (canonical, all.all_within(POSE_LIMIT))
+        (Self { lateral, yaw, vertical, roll }, all.all_within(POSE_LIMIT))
     }
+}
+
+/// -1 for a negative yaw, otherwise 1.
+#[inline(always)]
+pub(crate) fn longitudinal_sign(yaw: f64) -> f64 {
+    // The sum makes -0 positive.
+    1.0_f64.copysign(yaw + 0.0)
 }
 
 /// Factors of a pose's coordinates that mirror it to the right wheel.

@@ -227,18 +227,16 @@ pub(crate) struct Mask(__m128d);
 
 impl Mask {
     #[inline(always)]
-    #[expect(clippy::cast_sign_loss, clippy::cast_possible_truncation, reason = "two bits")]
-    pub(crate) fn bits(self) -> u8 {
-        unsafe { _mm_movemask_pd(self.0) as u8 }
+    pub(crate) fn bits(self) -> u32 {
+        unsafe { _mm_movemask_pd(self.0) }.cast_unsigned()
     }
 
     #[inline(always)]
-    #[expect(clippy::cast_sign_loss, clippy::cast_possible_truncation, reason = "four bits")]
-    pub(crate) fn bits_of_both(self, next: Self) -> u8 {
+    pub(crate) fn bits_of_both(self, next: Self) -> u32 {
         unsafe {
             // Saturation leaves all ones and all zeros as they are.
             let both = _mm_packs_epi32(_mm_castpd_si128(self.0), _mm_castpd_si128(next.0));
-            _mm_movemask_ps(_mm_castsi128_ps(both)) as u8
+            _mm_movemask_ps(_mm_castsi128_ps(both)).cast_unsigned()
         }
     }
 

@@ -16,7 +16,7 @@ use crate::header::{Header, SideHeader};
 use crate::instructions::{Avx2, Baseline, InstructionSet, Instructions, escape};
 use crate::layout::{RECORD, Sections, SideSections};
 use crate::math::{Two, single};
-use crate::pose::{Pose, PoseSigns, Side, WheelGeometry};
+use crate::pose::{Pose, PoseSigns, Side, WheelGeometry, longitudinal_sign};
 use crate::rigid::{Coordinates, RigidMap};
 
 /// A contact table, read in place from a borrowed image.
@@ -52,7 +52,7 @@ struct SideData<'a> {
 struct Located<'f> {
     valid: bool,
     /// In bits 0 and 1 whether yaw and roll were limited.
-    limited: u8,
+    limited: u32,
     frame: &'f Frame,
     coordinates: Coordinates,
     /// The places of lateral and yaw.
@@ -301,7 +301,7 @@ impl<'a> ContactTable<'a> {
         let Some(located) = self.locate(with, side, pose, frame) else { return *contacts = Contacts::NONE };
         let cell = self.cell(with, &located.plane, &located.coordinates);
         let Some((cell, axes)) = cell else { return *contacts = Contacts::NONE };
-        let flags = located.remarks(axes);
+        let flags = Flags::of_pose(axes, located.limited, located.valid);
         self.finish(with, side, (located.frame, &cell, flags), lanes, contacts);
     }
 
@@ -340,7 +340,7 @@ impl<'a> ContactTable<'a> {
         let mut frame = MaybeUninit::uninit();
         let located = self.locate(with, side, pose, &mut frame)?;
         let (cell, axes) = self.cell(with, &located.plane, &located.coordinates)?;
-        let flags = located.remarks(axes);
+        let flags = Flags::of_pose(axes, located.limited, located.valid);
         Some(Prepared { frame: *located.frame, cell, flags })
     }
 
@@ -382,35 +382,25 @@ impl<'a> ContactTable<'a> {
     ) -> Option<Located<'f>> {
         let data = self.side(side);
         // An invalid pose costs the same: what is no number is limited like any other.
-        let (canonical, valid) = pose.mirrored(with, &data.signs);
-        let (attitude, limited) = Attitude::by(with, canonical.pose.yaw, canonical.pose.roll);
+        let (pose, valid) = pose.mirrored(with, &data.signs);
+        let (attitude, limited) = Attitude::by(with, pose.yaw, pose.roll);
         let turned = Turned::new(&data.geometry, &attitude);
-        let displacement = Displacement::of(&canonical.pose, &turned.displacement);
-        let (psi, phi) = (attitude.yaw.value, attitude.roll.value);
+        let displacement = Displacement::of(&pose, &turned.displacement);
+        let (psi, phi) = (attitude.yaw.value.abs(), attitude.roll.value);
         // In memory before the registers are wanted for other things.
-        let frame =
-            frame.write(Frame::new(&data.geometry, &attitude, &displacement, turned.arm, canonical.longitudinal_sign));
+        let sign = longitudinal_sign(attitude.yaw.value);
+        let frame = frame.write(Frame::new(&data.geometry, &attitude, &displacement, turned.arm, sign));
         compiler_fence(Ordering::SeqCst);
         let (coordinates, plane) = data.rigid.locate(with, &displacement, psi, phi)?;
         Some(Located { valid, limited, frame, coordinates, plane })
     }
 
-    /// The cell, and the axes that its place is clamped to.
+    /// The cell, and in bit i whether its place is clamped on axis i.
     #[inline(always)]
-    fn cell<I: Instructions>(&self, with: I, plane: &Places, at: &Coordinates) -> Option<(Cell<I::Quad>, Flags)> {
+    fn cell<I: Instructions>(&self, with: I, plane: &Places, at: &Coordinates) -> Option<(Cell<I::Quad>, u32)> {
         let section = self.section.locate(with, Two::new([at.roll_offset, at.vertical]))?;
-        // The flags of the four axes are the lowest four bits, in the axes' order.
-        let axes = Flags::of_axes(plane.clamped.bits_of_both(section.clamped));
+        let axes = plane.clamped.bits_of_both(section.clamped);
         Some((Cell::new(with, plane, &section, self.strides), axes))
-    }
-}
-
-impl Located<'_> {
-    /// Remarks about the pose, given those about the axes.
-    #[inline(always)]
-    fn remarks(&self, axes: Flags) -> Flags {
-        let remarks = axes | Flags::of_angles(self.limited);
-        remarks.when(self.valid) | Flags::INVALID_INPUT.when(!self.valid)
     }
 }
 

@@ -197,23 +197,30 @@ const _: () = assert!(FINE[0] && FINE[1] && !FINE[2] && !FINE[3]);
 /// Coarse and fine weights of the edges as [`pairs`] for vectors of 256 bits.
 #[inline(always)]
 fn wide_pairs([even, odd]: [__m128i; 2]) -> [[__m256i; 4]; 2] {
+    const COARSE: i32 = FINE_BITS as i32;
     unsafe {
-        // The low halves of numbers take turns, so no packing is needed: a weight has no need of what is above its 16 bits.
-        let coarse = _mm_blend_epi16::<0b1010_1010>(
-            _mm_srli_epi32::<{ FINE_BITS as i32 }>(even),
-            _mm_slli_epi32::<{ 16 - FINE_BITS as i32 }>(odd),
+        // Coarse sums in the lower half, fine ones in the upper. The low halves of numbers take turns, so no packing is
+        // needed: a weight has no need of what is above its 16 bits.
+        let [even, odd] = [_mm256_broadcastsi128_si256(even), _mm256_broadcastsi128_si256(odd)];
+        let even = _mm256_srlv_epi32(even, _mm256_setr_epi32(COARSE, COARSE, COARSE, COARSE, 0, 0, 0, 0));
+        let odd = _mm256_sllv_epi32(odd, _mm256_setr_epi32(16 - COARSE, 16 - COARSE, 16 - COARSE, 16 - COARSE, 16, 16, 16, 16));
+        let mask = FINE_MASK | FINE_MASK << 16;
+        let sums = _mm256_and_si256(
+            _mm256_blend_epi16::<0b1010_1010>(even, odd),
+            _mm256_setr_epi32(-1, -1, -1, -1, mask, mask, mask, mask),
         );
-        let both = _mm_blend_epi16::<0b1010_1010>(even, _mm_slli_epi32::<16>(odd));
-        let fine = _mm_and_si128(both, _mm_set1_epi16(FINE_MASK as i16));
-        [repeated(differences(coarse)), repeated(differences(fine))]
+        // sum - before, as in `differences`.
+        let both = _mm256_sub_epi16(sums, _mm256_bslli_epi128::<2>(sums));
+        let coarse = _mm256_permute4x64_epi64::<0b01_00_01_00>(both);
+        let fine = _mm256_permute4x64_epi64::<0b11_10_11_10>(both);
+        [wide_spread(held(coarse)), wide_spread(held(fine))]
     }
 }
 
-/// [`pairs`] twice as wide.
+/// [`pairs`] of both halves.
 #[inline(always)]
-fn repeated(w: __m128i) -> [__m256i; 4] {
+fn wide_spread(w: __m256i) -> [__m256i; 4] {
     unsafe {
-        let w = held(_mm256_broadcastsi128_si256(w));
         [
             _mm256_shuffle_epi32::<0x00>(w),
             _mm256_shuffle_epi32::<0x55>(w),
@@ -226,7 +233,7 @@ fn repeated(w: __m128i) -> [__m256i; 4] {
 /// The same vector, which the compiler must take for any: it would broadcast its parts one by one.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn held(vector: __m256i) -> __m256i {
+pub(super) fn held(vector: __m256i) -> __m256i {
     let mut vector = vector;
     // SAFETY: no instruction at all.
     #[cfg(not(miri))]

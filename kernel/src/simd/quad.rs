@@ -3,6 +3,7 @@
 use core::arch::x86_64::*;
 use core::ops::{Add, Mul, Sub};
 
+use super::blend::held;
 use super::{Avx2, Four, Two, made, made_bits};
 use crate::blend::ONE;
 use crate::instructions::Quads;
@@ -114,6 +115,11 @@ impl Quads<Avx2> for WideQuad {
     fn of_singles(_: Avx2, bytes: &[u8; 16]) -> Self {
         // The pointer is that of sixteen bytes, and the load asks for no alignment.
         Self(unsafe { _mm256_cvtps_pd(_mm_castsi128_ps(_mm_loadu_si128(bytes.as_ptr().cast()))) })
+    }
+
+    #[inline(always)]
+    fn held(self) -> Self {
+        Self(unsafe { _mm256_castsi256_pd(held(_mm256_castpd_si256(self.0))) })
     }
 
     #[inline(always)]
