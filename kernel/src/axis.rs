@@ -334,7 +334,13 @@ pub(crate) struct Places {
 impl Places {
     /// The first cells, on no axis in particular.
     pub(crate) fn first(fraction: [f64; 2]) -> Self {
-        Self { records: 0, rigid: 0, fraction: Two::new(fraction), outside: Two::all(0.0), clamped: Two::all(0.0).differs(Two::all(0.0)) }
+        Self {
+            records: 0,
+            rigid: 0,
+            fraction: Two::new(fraction),
+            outside: Two::all(0.0),
+            clamped: Two::all(0.0).differs(Two::all(0.0)),
+        }
     }
 
     /// The fractions not clamped, but to +-[`EXTRAPOLATION_LIMIT`].

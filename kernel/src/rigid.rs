@@ -71,7 +71,10 @@ impl Parts {
 
 impl core::fmt::Debug for RigidMap<'_> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.debug_struct("RigidMap").field("bytes", &self.nodes.len()).field("strides", &self.strides).finish_non_exhaustive()
+        f.debug_struct("RigidMap")
+            .field("bytes", &self.nodes.len())
+            .field("strides", &self.strides)
+            .finish_non_exhaustive()
     }
 }
 

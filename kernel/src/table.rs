@@ -231,7 +231,9 @@ impl<'a> ContactTable<'a> {
     ) -> [[f32; CHANNELS]; SLOTS] {
         let (of, side) = (side, self.side(side));
         let plane = side.rigid.plane(with, at.lateral, at.yaw);
-        let Some((cell, _)) = plane.as_ref().and_then(|plane| self.cell(with, plane, at)) else { return [[0.0; CHANNELS]; SLOTS] };
+        let Some((cell, _)) = plane.as_ref().and_then(|plane| self.cell(with, plane, at)) else {
+            return [[0.0; CHANNELS]; SLOTS];
+        };
         let Some(edges) = edges(side.records, &cell) else { return [[0.0; CHANNELS]; SLOTS] };
         slots(with.blend(&edges, &cell, &side.scales, &mut MaybeUninit::uninit()), of)
     }
@@ -312,15 +314,11 @@ impl<'a> ContactTable<'a> {
         let lanes = escape(&mut memory);
         let mut contacts = contacts.iter_mut();
         let mut ahead = heapless::Deque::<(Side, Option<Prepared<I::Quad>>), AHEAD>::new();
-        let mut finish = |side, prepared: &Option<Prepared<I::Quad>>, contacts: &mut Contacts| match prepared {
-            Some(one) => self.finish(with, side, (&one.frame, &one.cell, one.flags), lanes, contacts),
-            None => *contacts = Contacts::NONE,
-        };
         for (side, pose) in wheels.iter().take(contacts.len()) {
             if ahead.is_full()
                 && let (Some((side, one)), Some(contacts)) = (ahead.pop_front(), contacts.next())
             {
-                finish(side, &one, contacts);
+                self.finish_prepared(with, side, one.as_ref(), lanes, contacts);
             }
             let prepared = self.prepare(with, *side, pose);
             if let Some(prepared) = &prepared {
@@ -330,7 +328,22 @@ impl<'a> ContactTable<'a> {
             let _ = ahead.push_back((*side, prepared));
         }
         for ((side, one), contacts) in ahead.iter().zip(contacts) {
-            finish(*side, one, contacts);
+            self.finish_prepared(with, *side, one.as_ref(), lanes, contacts);
+        }
+    }
+
+    #[inline(always)]
+    fn finish_prepared<I: Instructions>(
+        &self,
+        with: I,
+        side: Side,
+        prepared: Option<&Prepared<I::Quad>>,
+        lanes: &mut MaybeUninit<Lanes>,
+        contacts: &mut Contacts,
+    ) {
+        match prepared {
+            Some(one) => self.finish(with, side, (&one.frame, &one.cell, one.flags), lanes, contacts),
+            None => *contacts = Contacts::NONE,
         }
     }
 

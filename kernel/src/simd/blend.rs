@@ -203,7 +203,10 @@ fn wide_pairs([even, odd]: [__m128i; 2]) -> [[__m256i; 4]; 2] {
         // needed: a weight has no need of what is above its 16 bits.
         let [even, odd] = [_mm256_broadcastsi128_si256(even), _mm256_broadcastsi128_si256(odd)];
         let even = _mm256_srlv_epi32(even, _mm256_setr_epi32(COARSE, COARSE, COARSE, COARSE, 0, 0, 0, 0));
-        let odd = _mm256_sllv_epi32(odd, _mm256_setr_epi32(16 - COARSE, 16 - COARSE, 16 - COARSE, 16 - COARSE, 16, 16, 16, 16));
+        let odd = _mm256_sllv_epi32(
+            odd,
+            _mm256_setr_epi32(16 - COARSE, 16 - COARSE, 16 - COARSE, 16 - COARSE, 16, 16, 16, 16),
+        );
         let mask = FINE_MASK | FINE_MASK << 16;
         let sums = _mm256_and_si256(
             _mm256_blend_epi16::<0b1010_1010>(even, odd),
@@ -298,7 +301,7 @@ fn sixteen<const V: usize>(edges: &EdgePairs<'_>, coarse: &[__m256i; 4], fine: &
                 let low = _mm256_unpacklo_epi16(a, load_256::<V>(b, node));
                 first[node] = _mm256_add_epi32(first[node], _mm256_madd_epi16(low, *coarse));
                 if V == 0 {
-                    first_fine[node] = _mm256_add_epi32(first_fine[node], _mm256_madd_epi16(low, *fine));
+                    first_fine[node] = settled(_mm256_add_epi32(first_fine[node], _mm256_madd_epi16(low, *fine)));
                 }
                 // Then read b again: from memory, unpacking is one instruction.
                 first[node] = settled(first[node]);
