@@ -136,6 +136,13 @@ impl Two {
         Self(numbers)
     }
 
+    /// Two numbers that may have been written just now, one by one: each is read by itself. A processor that reads them as a
+    /// vector waits until they have reached the cache.
+    #[inline(always)]
+    pub(crate) const fn apart(a: &f64, b: &f64) -> Self {
+        Self([*a, *b])
+    }
+
     /// Twice the same.
     #[inline(always)]
     pub(crate) fn all(x: f64) -> Self {

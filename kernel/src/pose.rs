@@ -103,10 +103,10 @@ impl Pose {
     /// The pose as the right wheel sees it, its yaw of either sign, and whether it is valid.
     #[inline(always)]
     pub(crate) fn mirrored<I: Instructions>(&self, with: I, signs: &PoseSigns) -> (Self, bool) {
-        let all = I::Quad::new(with, self.numbers());
-        let [place, angles] = Two::transpose((all * I::Quad::new(with, signs.0)).held().halves());
+        let place = Two::apart(&self.lateral, &self.vertical) * Two::new(signs.place);
+        let angles = Two::apart(&self.yaw, &self.roll) * Two::new(signs.angles);
         let ([lateral, vertical], [yaw, roll]) = (place.numbers(), angles.numbers());
-        (Self { lateral, yaw, vertical, roll }, all.all_within(POSE_LIMIT))
+        (Self { lateral, yaw, vertical, roll }, I::Quad::join(with, [place, angles]).all_within(POSE_LIMIT))
     }
 }
 
@@ -119,16 +119,22 @@ pub(crate) fn longitudinal_sign(yaw: f64) -> f64 {
 
 /// Factors of a pose's coordinates that mirror it to the right wheel.
 #[derive(Clone, Copy)]
-pub(crate) struct PoseSigns([f64; 4]);
+#[repr(C, align(16))]
+pub(crate) struct PoseSigns {
+    /// Of lateral and vertical.
+    place: [f64; 2],
+    /// Of yaw and roll.
+    angles: [f64; 2],
+}
 
 impl PoseSigns {
     /// None yet.
-    pub(crate) const EMPTY: Self = Self([0.0; 4]);
+    pub(crate) const EMPTY: Self = Self { place: [0.0; 2], angles: [0.0; 2] };
 
     #[inline(always)]
     pub(crate) const fn new(side: Side) -> Self {
         let sign = side.sign();
-        Self([sign, sign, 1.0, sign])
+        Self { place: [sign, 1.0], angles: [sign; 2] }
     }
 }
 

@@ -143,6 +143,11 @@ impl Two {
     }
 
     #[inline(always)]
+    pub(crate) fn apart(a: &f64, b: &f64) -> Self {
+        Self(unsafe { _mm_loadh_pd(made(_mm_load_sd(a)), b) })
+    }
+
+    #[inline(always)]
     pub(crate) fn all(x: f64) -> Self {
         Self(unsafe { _mm_set1_pd(x) })
     }
