@@ -68,14 +68,18 @@ impl Turned {
     pub(crate) fn new(geometry: &WheelGeometry, attitude: &Attitude) -> Self {
         let (b, r0) = (geometry.lateral_position, geometry.nominal_radius);
         let (psi, phi) = (&attitude.yaw, &attitude.roll);
+        let by_b = Two::all(b) * Two::new([phi.versine, phi.sin]);
+        let by_r0 = Two::all(r0) * Two::new([phi.sin, phi.versine]);
         // g = b vφ + r0 sin φ
-        let inwards = b * phi.versine + r0 * phi.sin;
+        let ([b_versine, _], [r0_sine, _]) = (by_b.numbers(), by_r0.numbers());
+        let inwards = b_versine + r0_sine;
         let arm = b - inwards;
+        // b sin φ - r0 vφ
+        let [_, vertical] = (by_b - by_r0).numbers();
         let displacement = Displacement {
             // -(g + vψ (b - g))
             lateral: -(inwards + psi.versine * arm),
-            // b sin φ - r0 vφ
-            vertical: b * phi.sin - r0 * phi.versine,
+            vertical,
         };
         Self { displacement, arm }
     }

@@ -395,6 +395,7 @@ mod tests {
                     (x.at_least(y), v.at_least(w)),
                     (x.at_most(y), v.at_most(w)),
                     (x.abs(), v.abs()),
+                    (Two::apart(&a, &b), simd::Two::apart(&a, &b)),
                     (x.where_all(x.within(y).and(y.abs().within(x))), v.where_all(v.within(w).and(w.abs().within(v)))),
                     (Two::transpose([x, y])[0], simd::Two::transpose([v, w])[0]),
                     (Two::transpose([x, y])[1], simd::Two::transpose([v, w])[1]),

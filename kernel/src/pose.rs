@@ -113,8 +113,8 @@ impl Pose {
 /// -1 for a negative yaw, otherwise 1.
 #[inline(always)]
 pub(crate) fn longitudinal_sign(yaw: f64) -> f64 {
-    // The sum makes -0 positive.
-    1.0_f64.copysign(yaw + 0.0)
+    // The sum makes -0 positive, and whatever is no normal number.
+    1.0_f64.copysign(yaw + f64::MIN_POSITIVE)
 }
 
 /// Factors of a pose's coordinates that mirror it to the right wheel.
