@@ -94,7 +94,6 @@ pub(crate) trait Eight {
 
 /// See [`Instructions::Quad`].
 pub(crate) trait Quads<I>: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
-    fn new(with: I, numbers: [f64; 4]) -> Self;
     /// Four times the same.
     fn all(with: I, x: f64) -> Self;
     /// Four little-endian `f32`.
@@ -164,11 +163,6 @@ impl Eight for [Four; 2] {
 }
 
 impl Quads<Baseline> for Quad {
-    #[inline(always)]
-    fn new(_: Baseline, numbers: [f64; 4]) -> Self {
-        Self::new(numbers)
-    }
-
     #[inline(always)]
     fn all(_: Baseline, x: f64) -> Self {
         Self::all(x)

@@ -102,11 +102,6 @@ pub(crate) struct WideQuad(__m256d);
 // SAFETY of every block below: there is AVX2, and with it AVX.
 impl Quads<Avx2> for WideQuad {
     #[inline(always)]
-    fn new(_: Avx2, [a, b, c, d]: [f64; 4]) -> Self {
-        Self(unsafe { _mm256_set_pd(d, c, b, a) })
-    }
-
-    #[inline(always)]
     fn all(_: Avx2, x: f64) -> Self {
         Self(unsafe { _mm256_set1_pd(x) })
     }
@@ -143,7 +138,7 @@ impl Quads<Avx2> for WideQuad {
 
     #[inline(always)]
     fn running_sums(with: Avx2, plane: Two, roll: f64) -> [Self; 2] {
-        let numbers = |numbers| Self::new(with, numbers);
+        let numbers = |[a, b, c, d]: [f64; 4]| Self(unsafe { _mm256_set_pd(d, c, b, a) });
         let plane = unsafe { _mm256_castpd128_pd256(plane.0) };
         let [u, p] = unsafe { [_mm256_permute4x64_pd::<0x00>(plane), _mm256_permute4x64_pd::<0x55>(plane)] }.map(Self);
         // Twice each half's begin and, where a quarter is to be split off, its length.
