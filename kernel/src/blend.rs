@@ -79,9 +79,7 @@ impl LaneScales {
             }
         }
     }
-}
 
-impl LaneScales {
     /// Has contact angles multiplied by a side's sign.
     pub(crate) fn turn_angles(&mut self, sign: f32) {
         for lane in Slot::ALL.map(|slot| Channel::Angle.lane(slot)) {

@@ -7,15 +7,18 @@
 
 mod avx2;
 mod blend;
+mod hold;
 mod quad;
 
 use core::arch::x86_64::*;
 use core::ops::{Add, Div, Mul, Sub};
 
 use crate::layout::RECORD;
+use hold::made;
 
 pub(crate) use avx2::Avx2;
 pub(crate) use blend::{blend_128, blend_256};
+pub(crate) use hold::{escape, opaque};
 pub(crate) use quad::{Quad, WideQuad};
 
 /// Four `f32` that take the same operations; as [`crate::lanes::Four`].
@@ -281,57 +284,6 @@ impl Div for Two {
     fn div(self, other: Self) -> Self {
         Self(unsafe { _mm_div_pd(self.0, other.0) })
     }
-}
-
-/// Memory that the compiler must take for known to others: what is written to it before a fence is there at the fence.
-/// As `black_box` of a reference, which would be written to memory itself.
-#[inline(always)]
-pub(crate) fn escape<T>(place: &mut T) -> &mut T {
-    // SAFETY: no instruction at all.
-    #[cfg(not(miri))]
-    unsafe {
-        core::arch::asm!("/* {} */", in(reg) core::ptr::from_mut(place), options(nostack, preserves_flags));
-    }
-    place
-}
-
-/// The same slice, whose address the compiler must take for any: it keeps it in a register.
-#[inline(always)]
-#[cfg_attr(not(miri), expect(clippy::pointers_in_nomem_asm_block, reason = "no instruction at all"))]
-pub(crate) fn opaque<T>(list: &[T]) -> &[T] {
-    #[cfg(miri)]
-    return list;
-    // SAFETY: no instruction at all, so the address is the slice's.
-    #[cfg(not(miri))]
-    unsafe {
-        let mut start = list.as_ptr();
-        core::arch::asm!("/* {} */", inout(reg) start, options(nomem, nostack, preserves_flags, pure));
-        core::slice::from_raw_parts(start, list.len())
-    }
-}
-
-/// The same vector, which the compiler must make here: it would keep those that it is made of, for later.
-#[inline(always)]
-fn made(vector: __m128d) -> __m128d {
-    let mut vector = vector;
-    // SAFETY: no instruction at all.
-    #[cfg(not(miri))]
-    unsafe {
-        core::arch::asm!("/* {} */", inout(xmm_reg) vector, options(nomem, nostack, preserves_flags));
-    }
-    vector
-}
-
-/// The same bits, as [`made`].
-#[inline(always)]
-fn made_bits(bits: i32) -> i32 {
-    let mut bits = bits;
-    // SAFETY: no instruction at all.
-    #[cfg(not(miri))]
-    unsafe {
-        core::arch::asm!("/* {:e} */", inout(reg) bits, options(nomem, nostack, preserves_flags));
-    }
-    bits
 }
 
 /// Asks for the cache line that holds a record's first byte.

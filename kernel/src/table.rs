@@ -198,10 +198,8 @@ impl<'a> ContactTable<'a> {
     /// Coordinates of a pose in the table, mirrored to the right wheel with yaw >= 0 and not clamped to the table.
     #[must_use]
     pub fn coordinates(&self, side: Side, pose: &Pose) -> Coordinates {
-        {
-            let mut frame = MaybeUninit::uninit();
-            self.locate(Baseline, side, pose, &mut frame).map_or(Coordinates::default(), |located| located.coordinates)
-        }
+        let mut frame = MaybeUninit::uninit();
+        self.locate(Baseline, side, pose, &mut frame).map_or(Coordinates::default(), |located| located.coordinates)
     }
 
     /// The integers of the record at a node (lateral, yaw, roll offset, vertical); none beyond the axes.
@@ -229,13 +227,12 @@ impl<'a> ContactTable<'a> {
         side: Side,
         at: &Coordinates,
     ) -> [[f32; CHANNELS]; SLOTS] {
-        let (of, side) = (side, self.side(side));
-        let plane = side.rigid.plane(with, at.lateral, at.yaw);
-        let Some((cell, _)) = plane.as_ref().and_then(|plane| self.cell(with, plane, at)) else {
-            return [[0.0; CHANNELS]; SLOTS];
-        };
-        let Some(edges) = edges(side.records, &cell) else { return [[0.0; CHANNELS]; SLOTS] };
-        slots(with.blend(&edges, &cell, &side.scales, &mut MaybeUninit::uninit()), of)
+        let data = self.side(side);
+        let plane = data.rigid.plane(with, at.lateral, at.yaw);
+        let cell = plane.as_ref().and_then(|plane| self.cell(with, plane, at));
+        let Some((cell, _)) = cell else { return [[0.0; CHANNELS]; SLOTS] };
+        let Some(edges) = edges(data.records, &cell) else { return [[0.0; CHANNELS]; SLOTS] };
+        slots(with.blend(&edges, &cell, &data.scales, &mut MaybeUninit::uninit()), side)
     }
 
     /// Asks for the sixteen records of a pose, so that they are in the cache when the lookup comes, while the caller
@@ -399,9 +396,8 @@ impl<'a> ContactTable<'a> {
         let (attitude, limited) = Attitude::by(with, pose.yaw, pose.roll);
         let turned = Turned::new(&data.geometry, &attitude);
         let displacement = Displacement::of(&pose, &turned.displacement);
-        let (psi, phi) = (attitude.yaw.value.abs(), attitude.roll.value);
+        let (psi, phi, sign) = (attitude.yaw.value.abs(), attitude.roll.value, longitudinal_sign(attitude.yaw.value));
         // In memory before the registers are wanted for other things.
-        let sign = longitudinal_sign(attitude.yaw.value);
         let frame = frame.write(Frame::new(&data.geometry, &attitude, &displacement, turned.arm, sign));
         compiler_fence(Ordering::SeqCst);
         let (coordinates, plane) = data.rigid.locate(with, &displacement, psi, phi)?;

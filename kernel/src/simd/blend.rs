@@ -5,7 +5,8 @@ use core::arch::x86_64::*;
 use core::mem::MaybeUninit;
 use core::sync::atomic::{Ordering, compiler_fence};
 
-use super::{Avx2, Quad, WideQuad, escape};
+use super::hold::{escape, held, settled};
+use super::{Avx2, Quad, WideQuad};
 use crate::blend::{Cell, Edges, FINE, FINE_BITS, FINE_MASK, FINE_STEP, LaneScales, Lanes, fractions};
 use crate::channel::{BLOCK, LANES, SLOTS};
 use crate::layout::{RECORD, stored_block};
@@ -231,32 +232,6 @@ fn wide_spread(w: __m256i) -> [__m256i; 4] {
             _mm256_shuffle_epi32::<0xff>(w),
         ]
     }
-}
-
-/// The same vector, which the compiler must take for any: it would broadcast its parts one by one.
-#[inline]
-#[target_feature(enable = "avx2")]
-pub(super) fn held(vector: __m256i) -> __m256i {
-    let mut vector = vector;
-    // SAFETY: no instruction at all.
-    #[cfg(not(miri))]
-    unsafe {
-        core::arch::asm!("/* {} */", inout(ymm_reg) vector, options(pure, nomem, nostack, preserves_flags));
-    }
-    vector
-}
-
-/// The same vector, and all memory, which the compiler must take for any.
-#[inline]
-#[target_feature(enable = "avx2")]
-fn settled(vector: __m256i) -> __m256i {
-    let mut vector = vector;
-    // SAFETY: no instruction at all.
-    #[cfg(not(miri))]
-    unsafe {
-        core::arch::asm!("/* {} */", inout(ymm_reg) vector, options(nostack, preserves_flags));
-    }
-    vector
 }
 
 /// Eight lanes at the lower node, and their rise to the upper one.

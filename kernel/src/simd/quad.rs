@@ -3,8 +3,8 @@
 use core::arch::x86_64::*;
 use core::ops::{Add, Mul, Sub};
 
-use super::blend::held;
-use super::{Avx2, Four, Two, made, made_bits};
+use super::hold::{held, made, made_bits};
+use super::{Avx2, Four, Two};
 use crate::blend::ONE;
 use crate::instructions::Quads;
 
@@ -141,11 +141,11 @@ impl Quads<Avx2> for WideQuad {
         let numbers = |[a, b, c, d]: [f64; 4]| Self(unsafe { _mm256_set_pd(d, c, b, a) });
         let plane = unsafe { _mm256_castpd128_pd256(plane.0) };
         let [u, p] = unsafe { [_mm256_permute4x64_pd::<0x00>(plane), _mm256_permute4x64_pd::<0x55>(plane)] }.map(Self);
-        // Twice each half's begin and, where a quarter is to be split off, its length.
-        let begin = u * numbers([0.0, 0.0, ONE, ONE]);
+        // The quarters' begins: 0, 0 + (half - 0) p, half, half + (1 - half) p
+        let half = u * numbers([0.0, 0.0, ONE, ONE]);
         let length = numbers([0.0, 0.0, 0.0, ONE]) + u * numbers([0.0, ONE, 0.0, -ONE]);
-        let begin = begin + length * p;
-        // The first begin is zero.
+        let begin = half + length * p;
+        // A quarter ends where the next begins; the first begin is zero.
         let end = Self(unsafe { _mm256_permute4x64_pd::<0b00_11_10_01>(begin.0) }) + numbers([0.0, 0.0, 0.0, ONE]);
         [begin + (end - begin) * Self::all(with, roll), end]
     }
