@@ -119,6 +119,18 @@ mod tests {
     use std::string::ToString;
 
     #[test]
+    fn remarks_about_a_pose() {
+        for axes in 0..16_u8 {
+            for limited in 0..4 {
+                let flags = Flags::of_pose(axes.into(), limited, true);
+                let angle = Flags::ANGLE_LIMITED.when(limited != 0);
+                assert_eq!(flags, Flags::from_bits(axes) | angle);
+                assert_eq!(Flags::of_pose(axes.into(), limited, false), Flags::INVALID_INPUT);
+            }
+        }
+    }
+
+    #[test]
     fn lists_names() {
         assert_eq!(Flags::NONE.to_string(), "none");
         assert_eq!((Flags::CLAMPED_YAW | Flags::CONFORMAL).to_string(), "clamped-yaw, conformal");

@@ -154,6 +154,14 @@ mod tests {
     }
 
     #[test]
+    fn zero_and_subnormal_yaw_go_forward() {
+        for (yaw, sign) in [(0.0, 1.0), (-0.0, 1.0), (-1e-310, 1.0), (-1e-300, -1.0), (1e-300, 1.0), (-0.01, -1.0)] {
+            let canonical = Pose { yaw, ..Pose::default() }.canonical(Side::Right);
+            assert_eq!((canonical.longitudinal_sign, canonical.pose.yaw), (sign, yaw.abs()), "{yaw}");
+        }
+    }
+
+    #[test]
     fn invalid_in_any_field() {
         assert!(Pose::default().is_valid());
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e4] {

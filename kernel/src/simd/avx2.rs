@@ -147,3 +147,34 @@ fn ask() -> bool {
             && __cpuid_count(7, 0).ebx & AVX2 != 0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::axis::Bin;
+    use crate::instructions::Baseline;
+    use crate::layout::Strides;
+
+    #[test]
+    fn same_parts_and_cells_as_without() {
+        let Some(avx2) = Avx2::found() else { return };
+        let numbers = [0.0, 0.5, 0.999_999, 1.0, 3.25, 14.999, 15.0];
+        for a in numbers {
+            for b in numbers {
+                let factors = [70_000, 16, 0, 0];
+                let (two, same) = (Two::new([a, b]), |(sum, whole): (u32, Two)| (sum, whole.numbers()));
+                let parts = same(avx2.integer_parts(two, &factors));
+                assert_eq!(parts, same(Baseline.integer_parts(two, &factors)));
+                let (sum, [x, y]) = parts;
+                assert_eq!((f64::from(sum), x, y), (70_000.0 * x + 16.0 * y, a.trunc(), b.trunc()));
+            }
+        }
+        let bin = |cell, start| Bin::new(cell, start, 3, Strides { records: 640, rigid: 48 }).to_bytes();
+        for (a, b) in [(bin(0, 0), bin(7, 21)), (bin(5, 15), bin(1, 3))] {
+            let of = |Cells { start, reciprocal, records, rigid }: Cells| {
+                (start.numbers(), reciprocal.numbers(), records, rigid)
+            };
+            assert_eq!(of(avx2.cells(&a, &b)), of(Baseline.cells(&a, &b)));
+        }
+    }
+}
