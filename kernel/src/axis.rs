@@ -446,7 +446,7 @@ impl<'a> AxisPair<'a> {
 }
 
 /// A bin; none that is not there. On ARM a selection of one of zeros, since what a branch keeps in registers costs 137
-/// instructions a lookup there. On x86-64 a selection costs eleven (AVX2).
+/// instructions a lookup there. On x86-64 the selection costs five.
 #[inline(always)]
 fn bin_at(bins: &[BinBytes], index: usize) -> Option<&BinBytes> {
     const NOTHING: &BinBytes = &[0; BIN];
