@@ -69,7 +69,7 @@ pub struct Canonical {
     pub pose: Pose,
     /// Factor of lateral positions and contact angles: -1 for the left wheel.
     pub lateral_sign: f64,
-    /// Factor of longitudinal positions: -1 where the (mirrored) yaw was negative.
+    /// Factor of longitudinal positions: -1 where the (mirrored) yaw was negative (and a normal number).
     pub longitudinal_sign: f64,
 }
 
@@ -78,12 +78,8 @@ impl Pose {
     #[inline]
     #[must_use]
     pub fn is_valid(&self) -> bool {
-        Quad::new(self.numbers()).all_within(POSE_LIMIT)
-    }
-
-    #[inline(always)]
-    const fn numbers(&self) -> [f64; 4] {
-        [self.lateral, self.yaw, self.vertical, self.roll]
+        // A comparison with NaN is false.
+        Quad::new([self.lateral, self.yaw, self.vertical, self.roll]).all_within(POSE_LIMIT)
     }
 
     /// The pose as the right wheel with yaw >= 0 sees it: the mirror at y = 0 turns the signs of lateral, yaw and

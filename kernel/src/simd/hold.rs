@@ -46,17 +46,6 @@ pub(super) fn made(vector: __m128d) -> __m128d {
     vector
 }
 
-/// The same bits, made here and not later.
-#[inline(always)]
-pub(super) fn made_bits(bits: i32) -> i32 {
-    let mut bits = bits;
-    #[cfg(not(miri))]
-    unsafe {
-        asm!("/* {:e} */", inout(reg) bits, options(nomem, nostack, preserves_flags));
-    }
-    bits
-}
-
 /// The same vector, which is not taken apart.
 #[inline]
 #[target_feature(enable = "avx2")]

@@ -3,7 +3,7 @@
 use core::arch::x86_64::*;
 use core::ops::{Add, Mul, Sub};
 
-use super::hold::{held, made, made_bits};
+use super::hold::{held, made};
 use super::{Avx2, Four, Two};
 use crate::blend::ONE;
 use crate::instructions::Quads;
@@ -132,7 +132,7 @@ impl Quads<Avx2> for WideQuad {
         unsafe {
             // Not at most: what is no number is not.
             let size = _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0);
-            made_bits(_mm256_movemask_pd(_mm256_cmp_pd::<_CMP_NLE_UQ>(size, _mm256_set1_pd(limit)))) == 0
+            _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_NLE_UQ>(size, _mm256_set1_pd(limit))) == 0
         }
     }
 
