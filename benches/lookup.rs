@@ -232,12 +232,12 @@ fn main() {
         };
         let mut by_plain = || {
             for pose in (0..repeats).flat_map(|_| &poses) {
-                black_box(plain.contacts(black_box(pose)));
+                black_box(&plain.contacts(black_box(pose)));
             }
         };
         let mut by_blend = || {
             for x in (0..repeats).flat_map(|_| &coordinates) {
-                black_box(plain.blend(black_box(*x)));
+                black_box(&plain.blend(black_box(*x)));
             }
         };
         let mut by_interpn = || {
@@ -247,17 +247,17 @@ fn main() {
                 for (lane, value) in field_lanes.iter().zip(fields) {
                     record.0[*lane] = value;
                 }
-                black_box(plain.rebuild(pose, &record));
+                black_box(&plain.rebuild(pose, &record));
             }
         };
         let mut by_fields = || {
             for x in (0..repeats).flat_map(|_| &coordinates) {
-                black_box(interpn(black_box(*x)));
+                black_box(&interpn(black_box(*x)));
             }
         };
         let mut by_channels = || {
             for at in (0..repeats).flat_map(|_| &at) {
-                black_box(table.channels(Side::Right, black_box(at)));
+                black_box(&table.channels(Side::Right, black_box(at)));
             }
         };
         let mut ways: [&mut dyn FnMut(); 6] =

@@ -46,7 +46,7 @@ fn check_nodes(source: &Synthetic, [fine, coarse]: [f32; 2]) {
                         for channel in Channel::ALL {
                             let scale = source.sides[0].scales[slot.index()][channel.index()];
                             let stored = scale.offset + scale.step * f32::from(record[channel.lane(slot)]);
-                            let error = (channels[slot.index()][channel.index()] - stored).abs();
+                            let error = (channels.get(slot, channel) - stored).abs();
                             let steps = match channel {
                                 Channel::Indentation | Channel::Stiffness => fine,
                                 _ => coarse,
@@ -94,7 +94,7 @@ fn no_contact_for_what_is_no_number() {
 fn outside_the_indentation_is_extrapolated_and_the_rest_clamped() {
     let (source, image) = image();
     let table = ContactTable::new(&image).unwrap();
-    let delta = |at: &Coordinates| table.channels(Side::Right, at)[0][Channel::Indentation.index()];
+    let delta = |at: &Coordinates| table.channels(Side::Right, at).get(Slot::Tread, Channel::Indentation);
     let inner = inside(&source, [0.3, 0.4, 0.6, 1.0]);
     for (end, next) in [(2, 1), (0, 1)] {
         let (z_end, z_next) = (source.axes[3][end], source.axes[3][next]);
@@ -102,7 +102,8 @@ fn outside_the_indentation_is_extrapolated_and_the_rest_clamped() {
         let beyond = at(z_end + 2.0 * (z_end - z_next));
         let line = f64::from(delta(&at(z_end))) + 2.0 * f64::from(delta(&at(z_end)) - delta(&at(z_next)));
         assert!((f64::from(delta(&beyond)) - line).abs() < 1e-10);
-        let (edge, outside) = (table.channels(Side::Right, &at(z_end)), table.channels(Side::Right, &beyond));
+        let (edge, outside) =
+            (table.channels(Side::Right, &at(z_end)).slots(), table.channels(Side::Right, &beyond).slots());
         for slot in 0..3 {
             assert_eq!(edge[slot][1..], outside[slot][1..]);
         }
@@ -178,7 +179,8 @@ fn at_most_three_contacts_those_with_force() {
         let pose = table.rigid(Side::Right).pose(&source.sides[0].geometry, &at);
         let contacts = table.contacts(Side::Right, &pose);
         let channels = table.channels(Side::Right, &table.coordinates(Side::Right, &pose));
-        let expected: Vec<Slot> = Slot::ALL.into_iter().filter(|slot| channels[slot.index()][0] > 0.0).collect();
+        let expected: Vec<Slot> =
+            Slot::ALL.into_iter().filter(|slot| channels.get(*slot, Channel::Indentation) > 0.0).collect();
         assert_eq!(contacts.iter().map(|contact| contact.slot).collect::<Vec<_>>(), expected);
         let strongest = contacts.iter().map(|contact| contact.normal_force).fold(0.0, f32::max);
         assert_eq!(contacts.strongest().map_or(0.0, |contact| contact.normal_force), strongest);
@@ -217,7 +219,7 @@ proptest! {
             for slot in Slot::ALL {
                 for channel in Channel::ALL {
                     let step = f64::from(source.sides[0].scales[slot.index()][channel.index()].step);
-                    let difference = f64::from(channels[slot.index()][channel.index()]) - value(slot, channel, n, 0.0);
+                    let difference = f64::from(channels.get(slot, channel)) - value(slot, channel, n, 0.0);
                     // Half a step from rounding the nodes; a hundredth from f32 and the fine weights, or what the
                     // coarse weights leave where nodes lie 8,000 steps apart.
                     let force = matches!(channel, Channel::Indentation | Channel::Stiffness);
@@ -274,7 +276,7 @@ proptest! {
                 x[axis] = a + t * (b - a);
                 let [lateral, yaw, roll_offset, vertical] = x;
                 let at = Coordinates { lateral, yaw, roll_offset, vertical };
-                f64::from(table.channels(Side::Right, &at)[1][0])
+                f64::from(table.channels(Side::Right, &at).get(Slot::FlangeRoot, Channel::Indentation))
             };
             let middle = 0.5 * (low + high);
             let line = 0.5 * (delta(low) + delta(high));
@@ -293,7 +295,7 @@ proptest! {
             if backward {
                 pose.yaw = -pose.yaw;
             }
-            let channels = table.channels(Side::Right, &table.coordinates(Side::Right, &pose));
+            let channels = table.channels(Side::Right, &table.coordinates(Side::Right, &pose)).slots();
             for contact in &table.contacts(Side::Right, &pose) {
                 let [delta, c, k, k_across, e, s, radius_offset, angle, wheel, rail] =
                     channels[contact.slot.index()].map(f64::from);

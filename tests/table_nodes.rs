@@ -93,7 +93,7 @@ fn a_node_answers_what_is_stored_and_what_was_solved() {
             for channel in Channel::ALL {
                 let scale = side.scales[slot.index()][channel.index()];
                 let stored = scale.offset + scale.step * f32::from(record[channel.lane(slot)]);
-                assert_eq!(looked_up[slot.index()][channel.index()], stored, "{slot} {channel} at node {node:?}");
+                assert_eq!(looked_up.get(slot, channel), stored, "{slot} {channel} at node {node:?}");
                 if !touches && !matches!(channel, Channel::Indentation | Channel::Stiffness) {
                     continue;
                 }
@@ -146,7 +146,8 @@ fn the_indentation_is_linear_along_each_axis_inside_a_cell() {
         let delta = |t: f64| {
             let mut x = x;
             x[k] = end(0) + t * (end(1) - end(0));
-            [0, 1, 2].map(|slot| f64::from(table.channels(Side::Right, &coordinates(x))[slot][0]))
+            let channels = table.channels(Side::Right, &coordinates(x));
+            Slot::ALL.map(|slot| f64::from(channels.get(slot, Channel::Indentation)))
         };
         let (first, inside, last) = (delta(0.0), delta(t), delta(1.0));
         for slot in 0..SLOTS {
@@ -173,12 +174,15 @@ fn the_force_is_c_delta_to_the_three_halves() {
         let channels = table.channels(side, &table.coordinates(side, &pose));
         let contacts = table.contacts(side, &pose);
         for contact in contacts.iter() {
-            let c = channels[contact.slot.index()].map(f64::from);
-            let expected = c[Channel::Stiffness.index()] * c[Channel::Indentation.index()].powf(1.5);
+            let value = |channel: Channel| f64::from(channels.get(contact.slot, channel));
+            let expected = value(Channel::Stiffness) * value(Channel::Indentation).powf(1.5);
             worst = worst.max((f64::from(contact.normal_force) / expected - 1.0).abs());
             found[contact.slot.index()] += 1;
         }
-        let carrying = Slot::ALL.into_iter().filter(|s| channels[s.index()][0] > 0.0 && channels[s.index()][1] > 0.0);
+        let above_zero = |slot, channel| channels.get(slot, channel) > 0.0;
+        let carrying = Slot::ALL
+            .into_iter()
+            .filter(|slot| above_zero(*slot, Channel::Indentation) && above_zero(*slot, Channel::Stiffness));
         assert!(contacts.iter().map(|contact| contact.slot).eq(carrying), "{pose:?}");
     }
     println!("contacts in tread, flange root, flange: {found:?}; N against C delta^1.5 within {worst:.1e}");

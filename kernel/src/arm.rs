@@ -12,8 +12,8 @@
 use core::mem::MaybeUninit;
 use core::sync::atomic::{Ordering, compiler_fence};
 
-use crate::blend::{Cell, Edges, FINE, FINE_STEP, LaneScales, Lanes, float, fractions, weights};
-use crate::channel::{BLOCK, LANES};
+use crate::blend::{Cell, Edges, FINE, FINE_STEP, LaneScales, float, fractions, weights};
+use crate::channel::{BLOCK, Channels, LANES};
 use crate::layout::{RECORD, stored_block};
 
 /// Lanes in a word.
@@ -41,11 +41,11 @@ pub(crate) fn blend<'p>(
     edges: &Edges<'_>,
     cell: &Cell,
     scales: &LaneScales,
-    place: &'p mut MaybeUninit<Lanes>,
-) -> &'p Lanes {
+    place: &'p mut MaybeUninit<Channels>,
+) -> &'p Channels {
     // To be written over. Of a number that the compiler does not know to be zero: it would call a routine, which takes
     // several times as long as storing them.
-    let lanes = place.write(Lanes([core::hint::black_box(0.0); LANES]));
+    let lanes = place.write(Channels([core::hint::black_box(0.0); LANES]));
     let weights = weights(cell);
     let weights = [weights.map(|w| i32::from(w.coarse)), weights.map(|w| i32::from(w.fine))];
     let scales = scales.offsets.as_chunks().0.iter().zip(scales.steps.as_chunks().0);

@@ -17,7 +17,7 @@
 use core::mem::MaybeUninit;
 
 use crate::axis::Places;
-use crate::channel::{BLOCK, Channel, LANES, SLOTS, Scales, Slot};
+use crate::channel::{BLOCK, Channel, Channels, LANES, SLOTS, Scales, Slot};
 use crate::corners::eight;
 use crate::instructions::{Instructions, Quads};
 use crate::layout::{RECORD, stored};
@@ -46,15 +46,6 @@ const _: () = {
         slot += 1;
     }
 };
-
-/// Blended lanes in their units.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[repr(align(16))]
-pub(crate) struct Lanes(pub(crate) [f32; LANES]);
-
-impl Lanes {
-    pub(crate) const ZERO: Self = Self([0.0; LANES]);
-}
 
 /// Scales of the lanes: value = offset + step * blended lane, the step divided by what the weights sum to.
 #[derive(Debug, Clone, Copy)]
@@ -190,10 +181,10 @@ pub(crate) fn portable<'p>(
     edges: &Edges<'_>,
     cell: &Cell,
     scales: &LaneScales,
-    place: &'p mut MaybeUninit<Lanes>,
-) -> &'p Lanes {
+    place: &'p mut MaybeUninit<Channels>,
+) -> &'p Channels {
     let weights = weights(cell);
-    let lanes = place.write(Lanes::ZERO);
+    let lanes = place.write(Channels::ZERO);
     for (block, out) in lanes.0.as_chunks_mut::<BLOCK>().0.iter_mut().enumerate() {
         let fine = FINE.get(block).copied().unwrap_or_default();
         let t = fractions(cell, block);
@@ -316,7 +307,7 @@ mod tests {
     }
 
     /// Calls `check` with random records, fractions and the blend in quantisation steps.
-    fn sweep(mut check: impl FnMut(&[[u8; RECORD]], [f64; 4], &Lanes)) {
+    fn sweep(mut check: impl FnMut(&[[u8; RECORD]], [f64; 4], &Channels)) {
         let mut stream = Stream(1);
         let scales = LaneScales::NONE;
         for round in 0..20_000 {
@@ -336,8 +327,8 @@ mod tests {
             let edges = edges(records.as_flattened(), &cell).unwrap();
             let lanes = portable(&edges, &cell, &scales, place);
             check(&records, [u, p, r, t], lanes);
-            let bits = |lanes: &Lanes| lanes.0.map(f32::to_bits);
-            let same = |other: &Lanes| assert_eq!(bits(lanes), bits(other));
+            let bits = |lanes: &Channels| lanes.0.map(f32::to_bits);
+            let same = |other: &Channels| assert_eq!(bits(lanes), bits(other));
             same(crate::arm::blend(&edges, &cell, &scales, other));
             #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
             {

@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use crate::math::Four;
+
 /// Slots of a record.
 pub const SLOTS: usize = 3;
 /// Channels of a slot.
@@ -144,6 +146,37 @@ impl Channel {
 impl fmt::Display for Channel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.name())
+    }
+}
+
+/// The channels of a wheel's slots, in their units, as the blend leaves them: lane by lane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(16))]
+pub struct Channels(pub(crate) [f32; LANES]);
+
+impl Channels {
+    pub(crate) const ZERO: Self = Self([0.0; LANES]);
+
+    /// A channel of a slot, in the channel's unit.
+    #[inline]
+    #[must_use]
+    pub fn get(&self, slot: Slot, channel: Channel) -> f32 {
+        self.0.get(channel.lane(slot)).copied().unwrap_or_default()
+    }
+
+    /// All of them, `[slot][channel]`.
+    #[inline]
+    #[must_use]
+    pub fn slots(&self) -> [[f32; CHANNELS]; SLOTS] {
+        Slot::ALL.map(|slot| Channel::ALL.map(|channel| self.get(slot, channel)))
+    }
+
+    /// Contact angles times a side's sign, four times the same.
+    #[inline(always)]
+    pub(crate) fn turn_angles(&mut self, sign: Four) {
+        if let Some(angles) = self.0.as_chunks_mut::<BLOCK>().0.get_mut(Channel::Angle.index()) {
+            *angles = (Four::load(angles) * sign).numbers();
+        }
     }
 }
 

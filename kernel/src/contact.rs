@@ -5,8 +5,7 @@ use core::sync::atomic::{Ordering, compiler_fence};
 use heapless::Vec;
 use nalgebra::Vector3;
 
-use crate::blend::Lanes;
-use crate::channel::{BLOCK, LANES, SLOTS, Slot};
+use crate::channel::{BLOCK, Channels, LANES, SLOTS, Slot};
 use crate::displacement::{Attitude, Displacement};
 use crate::flags::Flags;
 use crate::instructions::{Eight as _, Instructions};
@@ -122,7 +121,7 @@ impl<'a> IntoIterator for &'a Contacts {
 #[derive(Clone, Copy)]
 pub(crate) struct Wheel {
     radius: Four,
-    lateral_sign: Four,
+    pub(crate) lateral_sign: Four,
 }
 
 impl Wheel {
@@ -179,7 +178,7 @@ struct Candidates {
 /// N = C δ+^1.5        a = K sqrt(δ+)        b = K' sqrt(δ+)
 /// ```
 #[inline(always)]
-fn rebuild(lanes: &Lanes, wheel: &Wheel, frame: &Frame) -> Candidates {
+fn rebuild(lanes: &Channels, wheel: &Wheel, frame: &Frame) -> Candidates {
     let blocks: &[[f32; BLOCK]; LANES / BLOCK] =
         lanes.0.as_chunks().0.first_chunk().unwrap_or(&[[0.0; BLOCK]; LANES / BLOCK]);
     let [_, _, _, _, e, s, radius_offset, _] = blocks.each_ref().map(Four::load);
@@ -246,7 +245,7 @@ impl Contacts {
     pub(crate) fn fill<I: Instructions>(
         &mut self,
         with: I,
-        lanes: &Lanes,
+        lanes: &Channels,
         wheel: &Wheel,
         frame: &Frame,
         valid: bool,
@@ -307,7 +306,7 @@ mod tests {
         let (wheel, attitude) = (Wheel::new(&geometry, Side::Right), Attitude::new(0.0, 0.0));
         let frame = Frame::new(&geometry, &attitude, &Displacement::default(), 0.75, 1.0);
         for bits in 0..8_usize {
-            let mut lanes = Lanes::ZERO;
+            let mut lanes = Channels::ZERO;
             let carrying = || Slot::ALL.into_iter().filter(|slot| bits >> slot.index() & 1 == 1);
             for slot in Slot::ALL {
                 lanes.0[Channel::Stiffness.lane(slot)] = [1e10, 2e10, 3e10][slot.index()];

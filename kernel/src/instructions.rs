@@ -4,8 +4,8 @@ use core::mem::MaybeUninit;
 use core::ops::{Add, Mul, Sub};
 
 use crate::axis::{BinBytes, Cells};
-use crate::blend::{Cell, Edges, LaneScales, Lanes, running_sums};
-use crate::channel::SLOTS;
+use crate::blend::{Cell, Edges, LaneScales, running_sums};
+use crate::channel::{Channels, SLOTS};
 use crate::contact::Contact;
 use crate::math::{Four, Quad, Two};
 
@@ -13,7 +13,6 @@ use crate::math::{Four, Quad, Two};
 pub(crate) use crate::simd::{Avx2, escape, opaque};
 #[cfg(not(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable"))))]
 use crate::{
-    channel::CHANNELS,
     contact::Contacts,
     pose::{Pose, Side},
     rigid::Coordinates,
@@ -74,8 +73,8 @@ pub(crate) trait Instructions: Copy {
         edges: &Edges<'_>,
         cell: &Cell<Self::Quad>,
         scales: &LaneScales,
-        place: &'p mut MaybeUninit<Lanes>,
-    ) -> &'p Lanes;
+        place: &'p mut MaybeUninit<Channels>,
+    ) -> &'p Channels;
 
     /// What the bins of two axes say.
     fn cells(self, a: &BinBytes, b: &BinBytes) -> Cells;
@@ -122,8 +121,8 @@ impl Instructions for Baseline {
         edges: &Edges<'_>,
         cell: &Cell,
         scales: &LaneScales,
-        place: &'p mut MaybeUninit<Lanes>,
-    ) -> &'p Lanes {
+        place: &'p mut MaybeUninit<Channels>,
+    ) -> &'p Channels {
         #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(feature = "portable")))]
         return crate::simd::blend_128(edges, cell, scales, place);
         #[cfg(all(target_arch = "arm", not(feature = "portable")))]
@@ -218,7 +217,7 @@ impl Avx2 {
         match self {}
     }
 
-    pub(crate) fn channels(self, _: &ContactTable<'_>, _: Side, _: &Coordinates) -> [[f32; CHANNELS]; SLOTS] {
+    pub(crate) fn channels(self, _: &ContactTable<'_>, _: Side, _: &Coordinates) -> Channels {
         match self {}
     }
 }

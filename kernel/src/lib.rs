@@ -109,7 +109,7 @@ mod simd;
 mod table;
 
 pub use axis::{Axis, AxisName, Bin, BinBytes, MAX_BINS, NodeBytes, Place, bin_start};
-pub use channel::{CHANNELS, CONFORMAL_LANE, Channel, LANES, RESERVED_LANE, SLOTS, Scale, Scales, Slot};
+pub use channel::{CHANNELS, CONFORMAL_LANE, Channel, Channels, LANES, RESERVED_LANE, SLOTS, Scale, Scales, Slot};
 pub use contact::{Contact, Contacts};
 pub use displacement::{Attitude, Displacement, displacement, pose_with};
 pub use error::TableError;

@@ -5,8 +5,8 @@ use core::mem::MaybeUninit;
 use core::sync::atomic::{Ordering, compiler_fence};
 
 use crate::axis::{Axis, AxisName, AxisPair, Places};
-use crate::blend::{Cell, LaneScales, Lanes, edges};
-use crate::channel::{CHANNELS, CONFORMAL_LANE, Channel, LANES, SLOTS, Slot};
+use crate::blend::{Cell, LaneScales, edges};
+use crate::channel::{CONFORMAL_LANE, Channels, LANES};
 use crate::check;
 use crate::contact::{Contacts, Frame, Wheel};
 use crate::displacement::{Attitude, Displacement, Turned, displacement};
@@ -210,29 +210,32 @@ impl<'a> ContactTable<'a> {
         self.side(side).records.as_chunks().0.get(index).map(check::lanes)
     }
 
-    /// The channels at coordinates of the table, `[slot][channel]`, in the units of [`Channel`].
+    /// The channels at coordinates of the table, mirrored to the right wheel as these are.
     #[must_use]
-    pub fn channels(&self, side: Side, at: &Coordinates) -> [[f32; CHANNELS]; SLOTS] {
+    pub fn channels(&self, side: Side, at: &Coordinates) -> Channels {
         match self.avx2 {
             Some(avx2) => avx2.channels(self, side, at),
-            None => self.channels_by(Baseline, side, at),
+            None => self.channels_baseline(side, at),
         }
+    }
+
+    #[inline(never)]
+    fn channels_baseline(&self, side: Side, at: &Coordinates) -> Channels {
+        self.channels_by(Baseline, side, at)
     }
 
     /// [`ContactTable::channels`] by these instructions, which the caller was compiled for.
     #[inline(always)]
-    pub(crate) fn channels_by<I: Instructions>(
-        &self,
-        with: I,
-        side: Side,
-        at: &Coordinates,
-    ) -> [[f32; CHANNELS]; SLOTS] {
+    pub(crate) fn channels_by<I: Instructions>(&self, with: I, side: Side, at: &Coordinates) -> Channels {
         let data = self.side(side);
         let plane = data.rigid.plane(with, at.lateral, at.yaw);
         let cell = plane.as_ref().and_then(|plane| self.cell(with, plane, at));
-        let Some((cell, _)) = cell else { return [[0.0; CHANNELS]; SLOTS] };
-        let Some(edges) = edges(data.records, &cell) else { return [[0.0; CHANNELS]; SLOTS] };
-        slots(with.blend(&edges, &cell, &data.scales, &mut MaybeUninit::uninit()), side)
+        let Some((cell, _)) = cell else { return Channels::ZERO };
+        let Some(edges) = edges(data.records, &cell) else { return Channels::ZERO };
+        let mut channels = *with.blend(&edges, &cell, &data.scales, &mut MaybeUninit::uninit());
+        // Their scales have the side's sign.
+        channels.turn_angles(data.wheel.lateral_sign);
+        channels
     }
 
     /// Asks for the sixteen records of a pose, so that they are in the cache when the lookup comes, while the caller
@@ -335,7 +338,7 @@ impl<'a> ContactTable<'a> {
         with: I,
         side: Side,
         prepared: Option<&Prepared<I::Quad>>,
-        lanes: &mut MaybeUninit<Lanes>,
+        lanes: &mut MaybeUninit<Channels>,
         contacts: &mut Contacts,
     ) {
         match prepared {
@@ -361,7 +364,7 @@ impl<'a> ContactTable<'a> {
         with: I,
         side: Side,
         (frame, cell, flags): (&Frame, &Cell<I::Quad>, Flags),
-        lanes: &mut MaybeUninit<Lanes>,
+        lanes: &mut MaybeUninit<Channels>,
         contacts: &mut Contacts,
     ) {
         let data = self.side(side);
@@ -458,20 +461,6 @@ impl<'a> SideData<'a> {
         self.signs = PoseSigns::new(side);
         self.wheel = Wheel::new(&self.geometry, side);
     }
-}
-
-/// The lanes of a wheel as slots of channels.
-fn slots(lanes: &Lanes, side: Side) -> [[f32; CHANNELS]; SLOTS] {
-    let mut slots = [[0.0; CHANNELS]; SLOTS];
-    for (slot, values) in Slot::ALL.into_iter().zip(&mut slots) {
-        for (channel, value) in Channel::ALL.into_iter().zip(values) {
-            *value = lanes.0.get(channel.lane(slot)).copied().unwrap_or_default();
-            if channel == Channel::Angle {
-                *value *= single(side.sign());
-            }
-        }
-    }
-    slots
 }
 
 /// Asks for a record's cache line.

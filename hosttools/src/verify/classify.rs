@@ -1,6 +1,6 @@
 //! What lies in the cell of a sample: a joint of the profiles, a change of contacts, or neither.
 
-use flangeway::{AxisName, CHANNELS, Channel, ContactTable, Coordinates, SLOTS, Side, Slot};
+use flangeway::{AxisName, Channel, Channels, ContactTable, Coordinates, SLOTS, Side, Slot};
 use rayon::prelude::*;
 
 use super::joints::{Joint, joints};
@@ -84,14 +84,14 @@ pub fn surroundings(table: &ContactTable<'_>, pair: &Pair, samples: &[Sample]) -
 /// An edge of the cell at the height of the sample: its coordinates and channels.
 struct Edge {
     at: Coordinates,
-    channels: [[f32; CHANNELS]; SLOTS],
+    channels: Channels,
     /// Slots with stiffness at one end of the edge only.
     broken: [bool; SLOTS],
 }
 
 impl Edge {
     fn value(&self, slot: Slot, channel: Channel) -> f64 {
-        f64::from(self.channels[slot.index()][channel.index()])
+        f64::from(self.channels.get(slot, channel))
     }
 
     fn indented(&self, slot: Slot) -> bool {
@@ -117,7 +117,7 @@ fn edges(table: &ContactTable<'_>, side: Side, at: &Coordinates) -> Vec<Edge> {
                 let at = Coordinates { lateral, yaw, roll_offset, vertical: at.vertical };
                 let stiff = vertical.map(|vertical| {
                     let channels = table.channels(side, &Coordinates { vertical, ..at });
-                    channels.map(|slot| slot[Channel::Stiffness.index()] > 0.0)
+                    Slot::ALL.map(|slot| channels.get(slot, Channel::Stiffness) > 0.0)
                 });
                 let broken = std::array::from_fn(|slot| stiff[0][slot] != stiff[1][slot]);
                 edges.push(Edge { at, channels: table.channels(side, &at), broken });

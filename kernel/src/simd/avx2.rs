@@ -6,8 +6,8 @@ use core::mem::{MaybeUninit, offset_of};
 
 use super::{Four, Two, WideQuad};
 use crate::axis::{BinBytes, Cells};
-use crate::blend::{Cell, Edges, LaneScales, Lanes};
-use crate::channel::{CHANNELS, SLOTS};
+use crate::blend::{Cell, Edges, LaneScales};
+use crate::channel::{Channels, SLOTS};
 use crate::contact::{Contact, Contacts};
 use crate::instructions::{Eight, Instructions};
 use crate::pose::{Pose, Side};
@@ -32,7 +32,7 @@ impl Avx2 {
     }
 
     #[inline(always)]
-    pub(crate) fn channels(self, table: &ContactTable<'_>, side: Side, at: &Coordinates) -> [[f32; CHANNELS]; SLOTS] {
+    pub(crate) fn channels(self, table: &ContactTable<'_>, side: Side, at: &Coordinates) -> Channels {
         unsafe { channels(self, table, side, at) }
     }
 
@@ -51,8 +51,8 @@ impl Instructions for Avx2 {
         edges: &Edges<'_>,
         cell: &Cell<WideQuad>,
         scales: &LaneScales,
-        place: &'p mut MaybeUninit<Lanes>,
-    ) -> &'p Lanes {
+        place: &'p mut MaybeUninit<Channels>,
+    ) -> &'p Channels {
         super::blend_256(self, edges, cell, scales, place)
     }
 
@@ -114,7 +114,7 @@ impl Eight for WideEight {
 }
 
 #[target_feature(enable = "avx2")]
-fn channels(avx2: Avx2, table: &ContactTable<'_>, side: Side, at: &Coordinates) -> [[f32; CHANNELS]; SLOTS] {
+fn channels(avx2: Avx2, table: &ContactTable<'_>, side: Side, at: &Coordinates) -> Channels {
     table.channels_by(avx2, side, at)
 }
 

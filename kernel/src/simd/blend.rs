@@ -7,8 +7,8 @@ use core::sync::atomic::{Ordering, compiler_fence};
 
 use super::hold::{escape, held, settled};
 use super::{Avx2, Quad, WideQuad};
-use crate::blend::{Cell, Edges, FINE, FINE_BITS, FINE_MASK, FINE_STEP, LaneScales, Lanes, fractions};
-use crate::channel::{BLOCK, LANES, SLOTS};
+use crate::blend::{Cell, Edges, FINE, FINE_BITS, FINE_MASK, FINE_STEP, LaneScales, fractions};
+use crate::channel::{BLOCK, Channels, LANES, SLOTS};
 use crate::layout::{RECORD, stored_block};
 
 /// Weights of the edges: pairs of `i16` for two neighbouring edges.
@@ -87,8 +87,8 @@ pub(crate) fn blend_128<'p>(
     edges: &Edges<'_>,
     cell: &Cell,
     scales: &LaneScales,
-    place: &'p mut MaybeUninit<Lanes>,
-) -> &'p Lanes {
+    place: &'p mut MaybeUninit<Channels>,
+) -> &'p Channels {
     let edges = edge_pairs(edges);
     let weights = Weights::new(cell.sums.map(Quad::rounded));
     let coarse = pairs(weights.coarse);
@@ -116,7 +116,7 @@ fn eight<const V: usize>(
     fine: &__m128i,
     cell: &Cell,
     scales: &LaneScales,
-    place: &mut MaybeUninit<Lanes>,
+    place: &mut MaybeUninit<Channels>,
 ) {
     unsafe {
         let blocks = [stored_block(2 * V), stored_block(2 * V + 1)];
@@ -166,8 +166,8 @@ pub(crate) fn blend_256<'p>(
     edges: &Edges<'_>,
     cell: &Cell<WideQuad>,
     scales: &LaneScales,
-    place: &'p mut MaybeUninit<Lanes>,
-) -> &'p Lanes {
+    place: &'p mut MaybeUninit<Channels>,
+) -> &'p Channels {
     unsafe {
         let edges = edge_pairs(edges);
         // In memory until they are wanted, as with 128 bits: where the last two lanes will be.
@@ -248,7 +248,7 @@ impl Eight {
 
     /// Lanes 8 E to 8 E + 8 in their units: offset + step (base + t rise).
     #[inline(always)]
-    fn store<const E: usize>(&self, t: __m256, scales: &LaneScales, place: &mut MaybeUninit<Lanes>) {
+    fn store<const E: usize>(&self, t: __m256, scales: &LaneScales, place: &mut MaybeUninit<Channels>) {
         let of = |numbers: &[f32; LANES]| numbers.as_chunks().0.get(E).copied().unwrap_or([0.0; 2 * BLOCK]);
         let (offsets, steps) = (of(&scales.offsets), of(&scales.steps));
         // The pointers are those of eight `f32` each, and neither loads nor store ask for alignment.
