@@ -5,7 +5,7 @@ use core::arch::x86_64::*;
 use core::mem::MaybeUninit;
 use core::sync::atomic::{Ordering, compiler_fence};
 
-use super::hold::{escape, held, settled};
+use super::hold::{escape, held, made, settled};
 use super::{Avx2, Quad, WideQuad};
 use crate::blend::{Cell, Edges, FINE, FINE_BITS, FINE_MASK, FINE_STEP, LaneScales, fractions};
 use crate::channel::{BLOCK, Channels, LANES, SLOTS};
@@ -215,7 +215,9 @@ fn wide_pairs([even, odd]: [__m128i; 2]) -> [[__m256i; 4]; 2] {
         );
         // sum - before, as in `differences`.
         let both = _mm256_sub_epi16(sums, _mm256_bslli_epi128::<2>(sums));
-        let coarse = _mm256_permute4x64_epi64::<0b01_00_01_00>(both);
+        // The lower half by itself, which to repeat is quick; a shuffle of the whole vector is not.
+        let low = made(_mm256_castpd256_pd128(_mm256_castsi256_pd(both)));
+        let coarse = _mm256_broadcastsi128_si256(_mm_castpd_si128(low));
         let fine = _mm256_permute4x64_epi64::<0b11_10_11_10>(both);
         [wide_spread(held(coarse)), wide_spread(held(fine))]
     }

@@ -145,8 +145,9 @@ impl Quads<Avx2> for WideQuad {
         let half = u * numbers([0.0, 0.0, ONE, ONE]);
         let length = numbers([0.0, 0.0, 0.0, ONE]) + u * numbers([0.0, ONE, 0.0, -ONE]);
         let begin = half + length * p;
-        // A quarter ends where the next begins; the first begin is zero.
-        let end = Self(unsafe { _mm256_permute4x64_pd::<0b00_11_10_01>(begin.0) }) + numbers([0.0, 0.0, 0.0, ONE]);
+        // A quarter ends where the next begins: the second at half, the last at the whole, which half + (1 - half) is
+        // however 1 - half rounds.
+        let end = Self(unsafe { _mm256_unpackhi_pd(begin.0, (half + length).0) });
         [begin + (end - begin) * Self::all(with, roll), end]
     }
 }
