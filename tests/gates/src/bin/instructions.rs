@@ -1,6 +1,7 @@
-//! Looks up poses of every kind, each by one call of [`counted`], so that callgrind can count each. Prints a line a
-//! case: its table, name, contacts, flags and a digest of the answer, the same for every build of the kernel; to standard
-//! error which instructions the lookups are made of. With the argument `baseline` these are those of every processor.
+//! Looks up poses of every kind, one by one and eight together, each by one call of [`counted`], so that callgrind can
+//! count each. Prints a line a case: its table, name, wheel, contacts, flags and a digest of the answer, the same for
+//! every build of the kernel; to standard error which instructions the lookups are made of. With the argument `baseline`
+//! these are those of every processor.
 
 use std::hint::black_box;
 
@@ -9,26 +10,63 @@ use flangeway::{AxisName, ContactTable, Contacts, Coordinates, InstructionSet, P
 /// A made-up table in which all three slots can carry force; `tests/kernel_gates.rs` writes it.
 static THREE: &[u8] = include_bytes!("../../three_contacts.fwt");
 
+/// Wheels that are looked up together.
+const WHEELS: usize = 8;
+/// Label of the calls that look nothing up.
+const FLOOR: &str = "floor";
+
 /// What is looked up.
+#[derive(Clone, Copy)]
+enum Wheels {
+    One(Side, Pose),
+    Eight([(Side, Pose); WHEELS]),
+}
+
 struct Case<'a> {
     table: &'a ContactTable<'static>,
     label: &'static str,
-    side: Side,
-    pose: Pose,
+    wheels: Wheels,
     /// False for the floor: the call alone.
     lookup: bool,
+    contacts: [Contacts; WHEELS],
+}
+
+impl<'a> Case<'a> {
+    fn new(table: &'a ContactTable<'static>, label: &'static str, wheels: Wheels) -> Self {
+        Self { table, label, wheels, lookup: label != FLOOR, contacts: [Contacts::NONE; WHEELS] }
+    }
+
+    /// What was looked up, and the answers.
+    fn answers(&self) -> Vec<(Side, Pose, &Contacts)> {
+        let wheels = match &self.wheels {
+            Wheels::One(side, pose) => &[(*side, *pose)][..],
+            Wheels::Eight(wheels) => wheels,
+        };
+        let answers = wheels.iter().zip(&self.contacts).filter(|_| self.lookup);
+        answers.map(|((side, pose), contacts)| (*side, *pose, contacts)).collect()
+    }
 }
 
 /// The function that is counted.
 #[inline(never)]
-fn counted(case: &Case<'_>, contacts: &mut Contacts) {
-    if case.lookup {
-        case.table.contacts_into(case.side, &case.pose, contacts);
-        if cfg!(feature = "broken") && contacts.total_normal_force() > 0.0 {
-            contacts.list.iter_mut().for_each(|contact| contact.angle = black_box(contact.angle) * 2.0);
+fn counted(case: &mut Case<'_>) {
+    match &case.wheels {
+        Wheels::One(side, pose) => {
+            let [contacts, ..] = &mut case.contacts;
+            if case.lookup {
+                case.table.contacts_into(*side, pose, contacts);
+                if cfg!(feature = "broken") && contacts.total_normal_force() > 0.0 {
+                    contacts.list.iter_mut().for_each(|contact| contact.angle = black_box(contact.angle) * 2.0);
+                }
+            }
+        }
+        Wheels::Eight(wheels) => {
+            if case.lookup {
+                case.table.contacts_many(wheels, &mut case.contacts);
+            }
         }
     }
-    black_box(contacts);
+    black_box(case);
 }
 
 /// Poses of every kind, by fractions of the table's axes.
@@ -81,17 +119,19 @@ fn poses(table: &ContactTable<'_>) -> Vec<(&'static str, Pose)> {
     poses
 }
 
-/// FNV-1a over the bits of every number of an answer.
-fn digest(contacts: &Contacts) -> u64 {
+/// FNV-1a over the bits of every number of a case's answers.
+fn digest(case: &Case<'_>) -> u64 {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let mut add = |word: u32| hash = (hash ^ u64::from(word)).wrapping_mul(0x0100_0000_01b3);
-    add(u32::from(contacts.flags.bits()));
-    for c in contacts {
-        let [x, y, z] = c.position.into();
-        let [a, b] = c.semi_axes;
-        let numbers = [c.normal_force, c.indentation, x, y, z, c.angle, c.rolling_radius, c.wheel_coordinate, a, b];
-        numbers.iter().chain(&[c.wheel_curvature, c.rail_curvature]).for_each(|number| add(number.to_bits()));
-        add(c.slot.index() as u32);
+    for (_, _, contacts) in case.answers() {
+        add(u32::from(contacts.flags.bits()));
+        for c in contacts {
+            let [x, y, z] = c.position.into();
+            let [a, b] = c.semi_axes;
+            let numbers = [c.normal_force, c.indentation, x, y, z, c.angle, c.rolling_radius, c.wheel_coordinate, a, b];
+            numbers.iter().chain(&[c.wheel_curvature, c.rail_curvature]).for_each(|number| add(number.to_bits()));
+            add(c.slot.index() as u32);
+        }
     }
     hash
 }
@@ -109,26 +149,45 @@ fn main() {
     eprintln!("{}", tables[0].1.instruction_set());
     let mut cases = Vec::new();
     for (_, table) in &tables {
+        let poses = poses(table);
+        let one = |(_, pose): (&str, Pose), side| Wheels::One(side, pose);
+        // Every pose once in every place.
+        let eight = |first: usize| {
+            let wheel = |i: usize| (Side::ALL[i % 2], poses[(first + i) % poses.len()].1);
+            Wheels::Eight(std::array::from_fn(wheel))
+        };
+        let first = one(poses[0], Side::Right);
         // Twice: what happens before the loop belongs to the first.
-        for _ in 0..2 {
-            let floor = Case { table, label: "floor", side: Side::Right, pose: Pose::default(), lookup: false };
-            cases.push((floor, Contacts::NONE));
+        cases.extend([first, first, eight(0)].map(|wheels| Case::new(table, FLOOR, wheels)));
+        for pose in &poses {
+            cases.extend(Side::ALL.map(|side| Case::new(table, pose.0, one(*pose, side))));
         }
-        for (label, pose) in poses(table) {
-            for side in Side::ALL {
-                cases.push((Case { table, label, side, pose, lookup: true }, Contacts::NONE));
-            }
-        }
+        cases.extend((0..poses.len()).map(|first| Case::new(table, "eight wheels", eight(first))));
     }
     // Whatever happens once, happens here.
-    let mut first = Contacts::NONE;
-    counted(&cases[2].0, &mut first);
-    for (case, contacts) in &mut cases {
-        counted(black_box(case), black_box(contacts));
+    for wheels in [cases[2].wheels, cases[cases.len() - 1].wheels] {
+        counted(black_box(&mut Case::new(cases[2].table, "", wheels)));
     }
-    for (case, contacts) in &cases {
+    for case in &mut cases {
+        counted(black_box(case));
+    }
+    for case in &cases {
         let name = tables.iter().find(|(_, table)| std::ptr::eq(table, case.table)).map_or("", |(name, _)| name);
-        let (count, flags, digest) = (contacts.list.len(), contacts.flags.bits(), digest(contacts));
-        println!("{name}\t{}\t{}\t{count}\t{flags:02x}\t{digest:016x}", case.label, case.side);
+        let (mut count, mut flags) = (0, 0);
+        for (side, pose, contacts) in case.answers() {
+            // Together as one by one.
+            assert!(
+                cfg!(feature = "broken") || case.table.contacts(side, &pose) == *contacts,
+                "{}: {pose:?}",
+                case.label
+            );
+            count += contacts.list.len();
+            flags |= contacts.flags.bits();
+        }
+        let wheel = match &case.wheels {
+            Wheels::One(side, _) => side.to_string(),
+            Wheels::Eight(_) => "each".to_string(),
+        };
+        println!("{name}\t{}\t{wheel}\t{count}\t{flags:02x}\t{:016x}", case.label, digest(case));
     }
 }
