@@ -1,11 +1,12 @@
 //! How long single steps take, for one wheel and for eight: records in the cache (warm), records nowhere in it (cold), the
 //! caches full of something else (polluted: 64 MiB walked before every step), and cold but asked for ahead
-//! (`ContactTable::contacts_many`; for one wheel `prefetch` a step before). With two tables: one of a usual size, its
-//! records flushed from all caches before each cold step, and one of 64 MiB in which no pose comes twice, so that the
-//! pages' addresses are in no cache either, which a rig that locks a usual table in memory does not meet.
+//! (`ContactTable::contacts_many`; for one wheel `prefetch` a step before). Beside them the time of reading the cold
+//! records alone, a byte of each and all at once: what memory asks for, whatever is done with them. With two tables: one of
+//! a usual size, its records flushed from all caches before each cold step, and one of 64 MiB in which no pose comes twice,
+//! so that the pages' addresses are in no cache either, which a rig that locks a usual table in memory does not meet.
 //!
 //! `--svg FILE` draws the histograms, `--json FILE` writes their quantiles and the paired ratios of cold wheels to warm
-//! ones. On a shared machine the tails are the machine's.
+//! ones. On a shared machine the tails are the machine's, and so is how many records can be asked for at a time.
 
 mod common;
 #[path = "../tests/kernel_synthetic/mod.rs"]
@@ -16,7 +17,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use common::{aligned, quartiles, random_poses};
-use flangeway::{ContactTable, Contacts, Pose, Side};
+use flangeway::{AxisName, ContactTable, Contacts, Pose, Side};
 use hdrhistogram::Histogram;
 use kernel_synthetic::Synthetic;
 use plotters::prelude::*;
@@ -70,19 +71,32 @@ fn nanoseconds(work: impl FnOnce()) -> u64 {
     u64::try_from(start.elapsed().as_nanos()).unwrap_or(u64::MAX).max(1)
 }
 
-/// Histograms of a number of wheels, by mode, and the steps' times of warm, cold and ahead.
+/// Where the sixteen records of a pose begin.
+fn corners(table: &ContactTable<'_>, pose: &Pose) -> [usize; 16] {
+    let at = table.coordinates(Side::Right, pose);
+    let x = [at.lateral, at.yaw, at.roll_offset, at.vertical];
+    let axes = AxisName::ALL.map(|name| table.axis(name));
+    let cell: [usize; 4] = std::array::from_fn(|i| axes[i].locate(x[i]).cell);
+    std::array::from_fn(|corner| {
+        let node = |i: usize| cell[i] + (corner >> (3 - i) & 1);
+        LINE * (0..4).fold(0, |index, i| index * axes[i].len() + node(i))
+    })
+}
+
+/// Histograms of a number of wheels, by mode, and the steps' times of warm, cold, ahead and records alone.
 struct Measured {
-    histograms: [(&'static str, Histogram<u64>); 4],
-    paired: Vec<[f64; 3]>,
+    histograms: [(&'static str, Histogram<u64>); 5],
+    paired: Vec<[f64; 4]>,
 }
 
 fn measure(
     table: &ContactTable<'_>,
+    records: &[u8],
     flushed: &[u8],
     count: usize,
     poses: &mut impl Iterator<Item = Pose>,
 ) -> Result<Measured, Box<dyn Error>> {
-    let names = ["warm", "cold", "polluted", "cold, asked for ahead"];
+    let names = ["warm", "cold", "polluted", "cold, asked for ahead", "cold records alone"];
     let mut histograms: Vec<Histogram<u64>> = names.iter().map(|_| Histogram::new(3)).collect::<Result<_, _>>()?;
     let mut contacts = vec![Contacts::NONE; count];
     let mut fresh = || -> Vec<(Side, Pose)> { poses.by_ref().take(count).map(|pose| (Side::Right, pose)).collect() };
@@ -93,7 +107,8 @@ fn measure(
             warm = fresh();
         }
         // The same wheels where their records are flushed.
-        let (cold, ahead) = if flushed.is_empty() { (fresh(), fresh()) } else { (warm.clone(), warm.clone()) };
+        let [cold, ahead, read] = [(); 3].map(|()| if flushed.is_empty() { fresh() } else { warm.clone() });
+        let read: Vec<usize> = read.iter().flat_map(|(_, pose)| corners(table, pose)).collect();
         looked_up(table, &warm, &mut contacts);
         let of_warm = nanoseconds(|| looked_up(table, black_box(&warm), black_box(&mut contacts)));
         flush(flushed);
@@ -109,10 +124,14 @@ fn measure(
             1 => looked_up(table, black_box(&ahead), black_box(&mut contacts)),
             _ => table.contacts_many(black_box(&ahead), black_box(&mut contacts)),
         });
-        for (histogram, time) in [(0, of_warm), (1, of_cold), (3, of_ahead)] {
+        flush(flushed);
+        let of_records = nanoseconds(|| {
+            black_box(black_box(&read).iter().fold(0, |sum: u8, line| sum ^ records[*line]));
+        });
+        for (histogram, time) in [(0, of_warm), (1, of_cold), (3, of_ahead), (4, of_records)] {
             histograms[histogram].record(time)?;
         }
-        paired.push([of_warm, of_cold, of_ahead].map(|time| time as f64));
+        paired.push([of_warm, of_cold, of_ahead, of_records].map(|time| time as f64));
     }
     let mut buffer = vec![0_u8; BUFFER];
     for _ in 0..POLLUTED_STEPS {
@@ -121,7 +140,7 @@ fn measure(
         histograms[2].record(nanoseconds(|| looked_up(table, black_box(&warm), black_box(&mut contacts))))?;
     }
     let mut histograms = histograms.into_iter();
-    let histograms = names.map(|name| (name, histograms.next().expect("four")));
+    let histograms = names.map(|name| (name, histograms.next().expect("five")));
     Ok(Measured { histograms, paired })
 }
 
@@ -169,9 +188,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, key, roll_offsets) in [("records flushed", "flushed", 5), ("64 MiB, no pose twice", "unseen", 257)] {
         let (table, records) = made_up(roll_offsets);
         let flushed = if key == "flushed" { records } else { &[] };
-        let mut poses = random_poses(&table, 3 * (STEPS + 1) * (WHEELS + 1), 5).into_iter();
+        let mut poses = random_poses(&table, 4 * (STEPS + 1) * (WHEELS + 1), 5).into_iter();
         for count in [1, WHEELS] {
-            let measured = measure(&table, flushed, count, &mut poses)?;
+            let measured = measure(&table, records, flushed, count, &mut poses)?;
             let caption = format!("{count} wheel{}, {name}", if count == 1 { "" } else { "s" });
             println!("{caption}: p50, p99, p99.9, largest, ns");
             for (mode, histogram) in &measured.histograms {
@@ -180,7 +199,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 let quantiles = serde_json::json!({ "p50": p50, "p99": p99, "p999": p999, "max": max });
                 json.insert(format!("{mode} {count} {key}"), quantiles);
             }
-            for (mode, way) in [("cold", 1), ("ahead", 2)] {
+            for (mode, way) in [("cold", 1), ("ahead", 2), ("records", 3)] {
                 let ratios = measured.paired.iter().map(|round| round[way] / round[0]);
                 let [low, median, high] = quartiles(ratios.collect());
                 println!("  {mode} over warm, paired: {median:.2} ({low:.2} to {high:.2})");
