@@ -34,11 +34,9 @@ struct Plain<'a> {
     counts: [usize; 4],
 }
 
-const NAMES: [AxisName; 4] = [AxisName::Lateral, AxisName::Yaw, AxisName::RollOffset, AxisName::Vertical];
-
 impl<'a> Plain<'a> {
     fn new(table: &'a ContactTable<'a>) -> Self {
-        let counts = NAMES.map(|name| table.axis(name).len());
+        let counts = AxisName::ALL.map(|name| table.axis(name).len());
         let scales = table.header().right.scales;
         let record = |node: [usize; 4]| {
             let lanes = table.node_record(Side::Right, node).expect("a node");
@@ -53,7 +51,7 @@ impl<'a> Plain<'a> {
         };
         let [a, b, c, d] = counts;
         let nodes = (0..a * b * c * d).map(|i| [i / (b * c * d), i / (c * d) % b, i / d % c, i % d]);
-        let ends = NAMES.map(|name| table.axis(name).range());
+        let ends = AxisName::ALL.map(|name| table.axis(name).range());
         let step = std::array::from_fn(|i| ((ends[i].1 - ends[i].0) / (counts[i] - 1) as f64) as f32);
         Self { table, records: nodes.map(record).collect(), first: ends.map(|ends| ends.0 as f32), step, counts }
     }
@@ -143,7 +141,7 @@ impl<'a> Plain<'a> {
     fn exact_force(&self, pose: &Pose) -> f64 {
         let at = self.table.coordinates(Side::Right, pose);
         let x = [at.lateral, at.yaw, at.roll_offset, at.vertical];
-        let places: [_; 4] = std::array::from_fn(|i| self.table.axis(NAMES[i]).locate(x[i]));
+        let places: [_; 4] = std::array::from_fn(|i| self.table.axis(AxisName::ALL[i]).locate(x[i]));
         let scales = self.table.header().right.scales;
         let mut lanes = [0.0_f64; 32];
         for corner in 0..16_usize {

@@ -91,11 +91,10 @@ fn a_left_wheel_like_the_right_one_changes_nothing() {
     let mut draws = Draws::new(10);
     let mut contacts = 0;
     for _ in 0..20_000 {
-        let [lateral, yaw, roll_offset, vertical] =
-            [AxisName::Lateral, AxisName::Yaw, AxisName::RollOffset, AxisName::Vertical].map(|name| {
-                let (first, last) = one_sided.axis(name).range();
-                draws.within(first, last)
-            });
+        let [lateral, yaw, roll_offset, vertical] = AxisName::ALL.map(|name| {
+            let (first, last) = one_sided.axis(name).range();
+            draws.within(first, last)
+        });
         let at = Coordinates { lateral, yaw, roll_offset, vertical };
         for side in Side::ALL {
             let pose = common::on_side(side, &one_sided.rigid(side).pose(&geometry, &at));

@@ -268,8 +268,7 @@ proptest! {
             let table = ContactTable::new(image).unwrap();
             let at = inside(source, t);
             let x = [at.lateral, at.yaw, at.roll_offset, at.vertical];
-            let names = [AxisName::Lateral, AxisName::Yaw, AxisName::RollOffset, AxisName::Vertical];
-            let cell = table.axis(names[axis]).locate(x[axis]).cell;
+            let cell = table.axis(AxisName::ALL[axis]).locate(x[axis]).cell;
             let (a, b) = (source.axes[axis][cell], source.axes[axis][cell + 1]);
             let delta = |t: f64| {
                 let mut x = x;

@@ -6,15 +6,13 @@ use crate::common::{self, Draws, Small};
 use flangeway::{AxisName, CHANNELS, Channel, ContactTable, Coordinates, Pose, SLOTS, Side, Slot};
 use flangeway_host::contact::SlotState;
 
-const AXES: [AxisName; 4] = [AxisName::Lateral, AxisName::Yaw, AxisName::RollOffset, AxisName::Vertical];
-
 fn coordinates([lateral, yaw, roll_offset, vertical]: [f64; 4]) -> Coordinates {
     Coordinates { lateral, yaw, roll_offset, vertical }
 }
 
 /// All nodes of the table by their indices.
 fn nodes(table: &ContactTable<'_>) -> Vec<[usize; 4]> {
-    let counts = AXES.map(|name| table.axis(name).len());
+    let counts = AxisName::ALL.map(|name| table.axis(name).len());
     let total: usize = counts.iter().product();
     let index = |mut n: usize| {
         let mut node = [0; 4];
@@ -28,12 +26,12 @@ fn nodes(table: &ContactTable<'_>) -> Vec<[usize; 4]> {
 
 /// Coordinates of a node.
 fn place(table: &ContactTable<'_>, node: [usize; 4]) -> Coordinates {
-    coordinates([0, 1, 2, 3].map(|k| table.axis(AXES[k]).nodes().nth(node[k]).unwrap()))
+    coordinates([0, 1, 2, 3].map(|k| table.axis(AxisName::ALL[k]).nodes().nth(node[k]).unwrap()))
 }
 
 /// Coordinates drawn from the whole table.
 fn anywhere(table: &ContactTable<'_>, draws: &mut Draws) -> Coordinates {
-    coordinates(AXES.map(|name| {
+    coordinates(AxisName::ALL.map(|name| {
         let (first, last) = table.axis(name).range();
         draws.within(first, last)
     }))
@@ -139,7 +137,7 @@ fn the_indentation_is_linear_along_each_axis_inside_a_cell() {
         let at = anywhere(&table, &mut draws);
         let x = [at.lateral, at.yaw, at.roll_offset, at.vertical];
         let k = draws.below(4);
-        let axis = table.axis(AXES[k]);
+        let axis = table.axis(AxisName::ALL[k]);
         let cell = axis.locate(x[k]).cell;
         let end = |i: usize| axis.nodes().nth(cell + i).unwrap();
         let t = draws.within(0.0, 1.0);
@@ -195,7 +193,7 @@ fn nodes_lie_where_the_recipe_put_them() {
     let table = ContactTable::new(image).unwrap();
     let grid = &recipe.grid;
     let ranges = [grid.lateral_m, grid.yaw_rad, grid.roll_rad, grid.vertical_m].map(|axis| axis.range);
-    for (name, [first, last]) in AXES.into_iter().zip(ranges) {
+    for (name, [first, last]) in AxisName::ALL.into_iter().zip(ranges) {
         let (low, high) = table.axis(name).range();
         assert!((low - first).abs() <= 1e-7 * first.abs() && (high - last).abs() <= 1e-7 * last.abs(), "{name}");
     }

@@ -52,9 +52,8 @@ pub fn trajectory(table: &ContactTable<'_>, count: usize) -> Vec<Pose> {
 
 /// The pose at fractions of the records' axes, lateral, yaw, roll offset, vertical.
 pub fn pose_at(table: &ContactTable<'_>, fractions: [f64; 4]) -> Pose {
-    let names = [AxisName::Lateral, AxisName::Yaw, AxisName::RollOffset, AxisName::Vertical];
     let [lateral, yaw, roll_offset, vertical] = std::array::from_fn(|i| {
-        let (first, last) = table.axis(names[i]).range();
+        let (first, last) = table.axis(AxisName::ALL[i]).range();
         first + fractions[i] * (last - first)
     });
     let at = Coordinates { lateral, yaw, roll_offset, vertical };

@@ -210,7 +210,9 @@ impl<'a> ContactTable<'a> {
         self.side(side).records.as_chunks().0.get(index).map(check::lanes)
     }
 
-    /// The channels at coordinates of the table, mirrored to the right wheel as these are.
+    /// The channels at coordinates of the table, mirrored to the right wheel as these are. Outside the axes as in a lookup:
+    /// limited to them, the indentation extrapolated along the vertical one. What is no number counts as far before an
+    /// axis' first node. Nothing remarks on this here; contacts have [`Flags`].
     #[must_use]
     pub fn channels(&self, side: Side, at: &Coordinates) -> Channels {
         match self.avx2 {
